@@ -138,7 +138,7 @@ def rows(found):
              (TA, Row("host-bus:2.6", "clock to /TA", out[TA], 10.0)),
              (CLOCKS, Row("servo-ic:5.1/11", "PHASE, SERVO from chip to chip, without the wire",
                           out[CLOCKS] + worst(found, CLOCKS, "in") + PAD_IN, TICK)),
-             (ISA_IN, Row("host-bus:3.4, t8", "command to IOCHRDY low, 4 ticks between", 4 * TICK + isa_in +
+             (ISA_IN, Row("host-bus:3.4, t8", "command to IOCHRDY low, 5 ticks between", 5 * TICK + isa_in +
                           out["isa_iochrdy_io"], 70.0)),
              (ISA_IN, Row("host-bus:3.4, t4", "IOR# to data, 8 ticks between", 8 * TICK + isa_in + out["isa_sd_io"],
                           120.0)),

@@ -139,10 +139,10 @@ class Regression {
     results_[number] = result;
     ++done_;
     if (result.passed()) return;
-    ++failed_;
+    failed_ += result.skipped() ? 0u : 1u;
     clear_line();
-    std::cout << fmt::format("FAIL {}: {}{}\n     {}\n", result.verdict, result.step.empty() ? "" : result.step + ": ",
-                             result.says, command_text(run.words))
+    std::cout << fmt::format("{}: {}{}\n     {}\n", result.skipped() ? "SKIP" : "FAIL " + result.verdict,
+                             result.step.empty() ? "" : result.step + ": ", result.says, command_text(run.words))
               << std::flush;
   }
 
@@ -158,18 +158,21 @@ class Regression {
         waiting.push_back(i);
       }
     Cluster cluster(fs::absolute(folder_).string(), options_.jobs);
-    while (!waiting.empty() && asked_to_stop == 0 && !late()) {
+    while (!waiting.empty() && asked_to_stop == 0 && !late() && cluster.answers()) {
       const std::size_t before = waiting.size();
       double longest = 0;
       for (const std::size_t i : waiting) longest = std::max(longest, plan_.runs[i].limit_seconds);
       cluster.submit(tasks_of(waiting), options_.task_seconds + longest);
       std::chrono::milliseconds patience = kPatience;
-      for (bool working = true; working && !waiting.empty() && asked_to_stop == 0;) {
+      bool working = true;
+      while (working && !waiting.empty() && asked_to_stop == 0) {
         std::this_thread::sleep_for(patience);
         working = cluster.working();  // before the results: what ends between them counts
         patience = collect(waiting) ? kPatience : std::min(2 * patience, kMostPatience);
         show(fmt::format("{} on the cluster", waiting.size()));
       }
+      if (working) cluster.cancel();
+      collect(waiting);  // what has ended until then
       waiting.erase(std::remove_if(waiting.begin(), waiting.end(),
                                    [this](std::size_t i) { return fs::exists(folder_of(plan_.runs[i])); }),
                     waiting.end());
@@ -272,7 +275,7 @@ class Regression {
   }
 
   int tell(const Report& report) const {
-    const nlohmann::json counts = report_json(report).at("counts");
+    const nlohmann::json content = report_json(report), counts = content.at("counts");
     for (std::size_t b = 0; b < buckets_.size(); ++b) {
       const Bucket& bucket = buckets_[b];
       std::cout << fmt::format("{} x {}: {}{}{}\n", bucket.runs.size(), bucket.group, bucket.verdict,
@@ -286,10 +289,11 @@ class Regression {
       std::cout << fmt::format("{:8.1f} new, {} covers: {}\n", r.adds, r.reached,
                                command_text(plan_.runs[r.run].words));
     tell(report.coverage);
-    const auto missing = counts.at("not_run").get<std::size_t>();
-    const bool passed = counts.at("passed").get<std::size_t>() == plan_.runs.size();
+    const auto missing = counts.at("not_run").get<std::size_t>(), skipped = counts.at("skipped").get<std::size_t>();
+    const bool passed = content.at("verdict") == "passed";
     std::cout << fmt::format("{} {}: {} runs, {} failed", passed ? "PASS" : "FAIL", plan_.title, plan_.runs.size(),
                              counts.at("failed").get<std::size_t>());
+    if (skipped != 0) std::cout << fmt::format(", {} skipped", skipped);
     if (missing != 0) std::cout << fmt::format(", {} not run: --resume makes them", missing);
     if (taken_over_ != 0) std::cout << fmt::format(", {} taken over", taken_over_);
     std::cout << fmt::format("; {:.1f} s\n{}/report.html\n", seconds(), folder_);

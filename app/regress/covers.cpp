@@ -14,11 +14,16 @@ void Coverage::add(std::size_t run, const std::string& engine, const std::string
   const nlohmann::json result = file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
   if (!result.is_object() || !result.contains("covers")) return;
   Of of{run, engine, {}};
-  for (const auto& [name, cover] : result.at("covers").items()) {
-    const std::uint64_t count = cover.value("count", std::uint64_t{0});
-    of.counts[name] = count;
+  std::map<std::string, std::uint64_t> least;
+  try {
+    for (const auto& [name, cover] : result.at("covers").items()) {
+      of.counts[name] = cover.value("count", std::uint64_t{0});
+      least[name] = cover.value("least", std::uint64_t{1});
+    }
+  } catch (const nlohmann::json::exception&) { return; }  // a file of another form tells of none
+  for (const auto& [name, count] : of.counts) {
     MergedCover& merged = merged_[name];
-    merged.least = std::max(merged.least, cover.value("least", std::uint64_t{1}));
+    merged.least = std::max(merged.least, least[name]);
     merged.counts[engine] += count;
   }
   runs_.push_back(std::move(of));

@@ -11,7 +11,7 @@ namespace {
 // No tag of it ends the script it stands in.
 void put(std::string& page, const std::string& place, const nlohmann::json& content) {
   std::string text;
-  for (const char c : content.dump()) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  for (const char c : text_of(content)) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
   page.replace(page.find(place), place.size(), text);
 }
 

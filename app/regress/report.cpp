@@ -68,13 +68,14 @@ nlohmann::json report_json(const Report& report) {
     }
     buckets.push_back(entry);
   }
-  const std::size_t missing = verdicts["not run"], passed = verdicts["passed"];
+  const std::size_t missing = verdicts["not run"], passed = verdicts["passed"], skipped = verdicts["skipped"];
   return {{"title", plan.title},
-          {"verdict", passed == plan.runs.size() ? "passed" : "failed"},
+          {"verdict", passed + skipped == plan.runs.size() ? "passed" : "failed"},
           {"counts",
            {{"runs", plan.runs.size()},
             {"passed", passed},
-            {"failed", plan.runs.size() - passed - missing},
+            {"failed", plan.runs.size() - passed - skipped - missing},
+            {"skipped", skipped},
             {"not_run", missing}}},
           {"build", report.build},
           {"fresh_from", report.fresh_from},
@@ -107,8 +108,9 @@ std::string junit_text(const Report& report) {
     test.append_attribute("classname") = run.group.c_str();
     test.append_attribute("name") = run.name.c_str();
     ++sum.runs;
-    if (!report.results[i]) {
-      test.append_child("skipped").append_attribute("message") = "not run";
+    if (!report.results[i] || report.results[i]->skipped()) {
+      test.append_child("skipped").append_attribute("message") =
+          report.results[i] ? report.results[i]->says.c_str() : "not run";
       ++sum.skipped;
       continue;
     }
@@ -138,7 +140,7 @@ std::string junit_text(const Report& report) {
 
 void write_reports(const Report& report, const std::string& folder) {
   const nlohmann::json content = report_json(report);
-  write(folder + "/report.json", content.dump(1) + "\n");
+  write(folder + "/report.json", text_of(content, 1) + "\n");
   write(folder + "/report.xml", junit_text(report));
   nlohmann::json pictures = nlohmann::json::array();
   for (const Replay& replay : report.replays) pictures.push_back(replay.picture);

@@ -23,11 +23,15 @@ namespace brick::regress {
 namespace {
 
 constexpr std::size_t kLongestText = 300;
+constexpr int kSkipped = 77;  // exit status, as ctest and automake have it
 constexpr std::streamoff kEndOfOutput = 64 * 1024;
 
-std::string shortened(std::string text) {
-  text = readable_text(text);
-  return text.size() > kLongestText ? text.substr(0, kLongestText) + "..." : text;
+std::string shortened(const std::string& bytes) {
+  const std::string text = readable_text(bytes);
+  if (text.size() <= kLongestText) return text;
+  std::size_t end = kLongestText;
+  while ((text[end] & 0xC0) == 0x80) --end;  // within a character
+  return text.substr(0, end) + "...";
 }
 
 std::string host_name() {
@@ -56,16 +60,21 @@ std::string last_said(const std::string& file) {
   return shortened(failure.empty() ? last : failure);
 }
 
-void read_steps(const nlohmann::json& run, Result& result) {
-  if (!run.is_object()) return;
-  result.simulated_ms = run.value("simulated_ns", 0.0) * 1e-6;
-  for (const auto& step : run.value("steps", nlohmann::json::array())) {
-    if (step.value("passed", false)) continue;
-    result.step = shortened(step.value("name", ""));
-    result.says = shortened(step.value("detail", ""));
-    result.at_ms = step.value("ns", 0.0) * 1e-6;
-    return;
-  }
+// How far a bench came and the first step that failed; a file of another form tells nothing.
+Result steps_of(const nlohmann::json& run) {
+  if (!run.is_object()) return {};
+  try {
+    Result result;
+    result.simulated_ms = run.value("simulated_ns", 0.0) * 1e-6;
+    for (const auto& step : run.value("steps", nlohmann::json::array())) {
+      if (step.value("passed", false)) continue;
+      result.step = shortened(step.value("name", ""));
+      result.says = shortened(step.value("detail", ""));
+      result.at_ms = step.value("ns", 0.0) * 1e-6;
+      break;
+    }
+    return result;
+  } catch (const nlohmann::json::exception&) { return {}; }
 }
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -110,11 +119,10 @@ std::string without_numbers(const std::string& text) {
 }  // namespace
 
 Result judge(const Run& run, const Ended& ended, const std::string& folder) {
-  Result result;
+  Result result = steps_of(json_of(folder + "/run.json"));  // a bench of somebody else may leave one too
   result.wall_seconds = ended.seconds;
   result.host = host_name();
   const std::string output = folder + "/output.txt";
-  read_steps(json_of(folder + "/run.json"), result);  // a bench of somebody else may leave one too
   switch (ended.how) {
     case Ended::How::kLimit:
       result.verdict = "limit";
@@ -129,6 +137,11 @@ Result judge(const Run& run, const Ended& ended, const std::string& folder) {
   }
   if (ended.code == 0) {
     result.verdict = "passed";
+    return result;
+  }
+  if (ended.code == kSkipped && !run.bench()) {
+    result.verdict = "skipped";
+    result.says = last_said(output);
     return result;
   }
   result.verdict = ended.code == 1 ? "failed" : ended.code == 2 ? "bad" : "crashed";
@@ -153,12 +166,16 @@ nlohmann::json result_json(const Run& run, const Result& result) {
           {"host", result.host}};
 }
 
+std::string text_of(const nlohmann::json& content, int indent) {
+  return content.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 void keep(const Run& run, const Result& result, const nlohmann::json& build, const std::string& folder) {
   nlohmann::json content = result_json(run, result);
   content["build"] = build;
   const std::string file = folder + "/result.json", unfinished = file + ".new";
   std::ofstream out(unfinished);
-  out << content.dump(2) << '\n';
+  out << text_of(content, 2) << '\n';
   out.close();
   std::error_code failed;
   if (out) std::filesystem::rename(unfinished, file, failed);

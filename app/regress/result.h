@@ -13,13 +13,14 @@
 namespace brick::regress {
 
 struct Result {
-  std::string verdict;  // passed, failed, bad (usage or input), limit, crashed
+  std::string verdict;  // passed, failed, bad (usage or input), limit, crashed, skipped (something is missing)
   std::string step;     // of a bench: the first that failed
   std::string says;     // what it measured, or what the run said last
   double at_ms = 0;     // simulated time of that step
   double simulated_ms = 0, wall_seconds = 0;
-  std::string host;  // the machine that made it
+  std::string host{};  // the machine that made it
   bool passed() const { return verdict == "passed"; }
+  bool skipped() const { return verdict == "skipped"; }
 };
 
 // Of a run that has ended in `folder`.
@@ -31,8 +32,10 @@ void keep(const Run& run, const Result& result, const nlohmann::json& build, con
 std::optional<Result> kept(const Run& run, const nlohmann::json& build, const std::string& folder);
 
 nlohmann::json result_json(const Run& run, const Result& result);
+// A folder's name may be no UTF-8, and stands in commands.
+std::string text_of(const nlohmann::json& content, int indent = -1);
 
-// Failures of one kind: bench, step, and what was said but for its numbers.
+// Failures, or what was skipped, of one kind: bench, step, and what was said but for its numbers.
 struct Bucket {
   std::string group, verdict, step, says;  // says: with # for numbers
   std::vector<std::size_t> runs;           // of the plan

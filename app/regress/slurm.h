@@ -2,6 +2,7 @@
 // anything of an array still waits or runs.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -21,16 +22,19 @@ class Cluster {
 
   // `longest`: seconds a task may take in all. Throws UsageError with what the cluster says when it takes none.
   void submit(const std::vector<Task>& tasks, double longest);
-  bool working() const;
-  void cancel();  // and waits for the end of what runs
+  bool working();        // also while the cluster does not answer for less than some minutes
+  bool answers() const;  // or has done so lately
+  // And waits for the end of what runs. Where it may go on this is said, and the next call on the folder tries again.
+  void cancel();
 
-  // What a call that was killed has left at work in `folder`.
+  // What a call that was killed has left at work in `folder`. Throws UsageError when it may go on.
   static void cancel_left_over(const std::string& folder);
 
  private:
   const std::string folder_;
   const unsigned at_once_;
   std::string job_;
+  std::chrono::steady_clock::time_point heard_ = std::chrono::steady_clock::now();
   unsigned arrays_ = 0;
 };
 

@@ -28,6 +28,7 @@ struct Order {
 };
 constexpr double kJitter = 3;
 constexpr double kStep = 0.5, kLongest = 250;  // ms
+constexpr double kBegins = 10;                 // ms until the last order moves what has stood for long
 
 constexpr const char* kDwelling = "B9R";         // the program that dwells
 constexpr double kThere = 28, kBackFeed = 1.75;  // counts; counts/ms on the slow way from the DWELL
@@ -60,7 +61,7 @@ std::vector<Case> cases() {
           {"Isx20=0: < is H, > is R",
            0,
            kRecords,
-           {{6, "<"}, {16, ">"}, {59, "I5{}20=12"}, {60, kDwelling}, {93, "<"}, {133, ">"}},
+           {{6, "<"}, {16, ">"}, {59, "I5{}20=12"}, {60, kDwelling}, {93, "<"}, {135, ">"}},
            true,
            false}};
 }
@@ -259,6 +260,7 @@ void Reversal::run() {
     host_.watch(words);
     host_.expect(line, "");
     give_orders(all, first, count);
+    host_.wait_ms(kBegins);
     if (!host_.settle(250, 6)) report().fail(line, "still moving after 250 ms");
     for (unsigned s = 1; s <= count; ++s) judge(all[first + s - 1], {s, {2 * s - 1, 2 * s}, all[first + s - 1].name});
   }

@@ -63,21 +63,25 @@ def run(modules, options):
         from rtl import BadBuild, Judge
     except ImportError as missing:  # of a package of tools/requirements.txt
         skip(f"{missing.name} is not installed (./dev setup)")
-    if options.kind == "again":
-        return again.main(modules, options)
-    status = 0
-    for module in modules:
+
+    def judge(module):
+        session = Session(Judge(ROOT, options.build, module), options)
+        if options.changed and session.is_fresh():
+            return 0
+        session.run()
+        print(session.summary(), flush=True)
+        return int(len(session.faults) > 0)
+
+    def status_of(what, work, *arguments):
         try:
-            session = Session(Judge(ROOT, options.build, module), options)
-            if options.changed and session.is_fresh():
-                continue
-            session.run()
-            print(session.summary(), flush=True)
-            status = status or len(session.faults) > 0
+            return work(*arguments)
         except (BadBuild, NoBuild, ValueError) as bad:
-            print(f"mutate: {module.name}: {bad}", file=sys.stderr, flush=True)
-            status = 1
-    return int(status)
+            print(f"mutate: {what}: {bad}", file=sys.stderr, flush=True)
+            return 1
+
+    if options.kind == "again":
+        return status_of("again", again.main, modules, options)
+    return max([status_of(module.name, judge, module) for module in modules], default=0)
 
 
 def main():

@@ -12,9 +12,14 @@ def refuted(root, name, file, source, mutated, folder, limit):
         rules = prove.Rules(root, name)
         rules.edits.insert(0, prove.Edit("edit", "mutant", file, source, mutated))
         stem = prove.build(rules, solvers)
-        for rule in rules.english:
-            if solvers.search(stem, rule, rules.steps) is not None:
-                return rule
     except prove.Failed:
         return None
-    return None
+    return next((rule for rule in rules.english if found(solvers, stem, rule, rules.steps)), None)
+
+
+def found(solvers, stem, rule, steps):
+    """No answer of one rule says nothing of the others."""
+    try:
+        return solvers.search(stem, rule, steps) is not None
+    except prove.Failed:
+        return False

@@ -12,6 +12,7 @@ import tomllib
 import plan
 import records
 from common import ROOT
+from mutant import hash_of
 from runner import ALIVE, EQUAL, KILLED, OUTSIDE
 
 PAGE = ROOT / "docs/mutation.md"
@@ -35,6 +36,7 @@ number 0 is the module as it is and passes. The first failure stops.
 - **outside**: ended by the wall clock or a crash without a report that names its place; out of the count too.
 - **at least**: the lower end of what the score of all mutants of the module may be, at 95 % (Wilson's interval, one
   side), from those drawn; the score itself where all were judged.
+- **stale**, at the commit: the file has changed since it was judged.
 
 Not mutated: what is fixed before a model runs (widths, parameters, generate blocks, sensitivity lists); `board_sim` and
 the test bench. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the options.
@@ -129,22 +131,24 @@ def page(results, given):
     for kind in sorted({kind for kind, _ in results}):
         title = {"rtl": "RTL"}.get(kind, kind.capitalize())
         lines += [f"## {title}", "| " + " | ".join(COLUMNS) + " |", "|---" * len(COLUMNS) + "|"]
-        everything = []
+        everything, seconds = [], 0.0
         for (of, name), (heads, rows) in results.items():
             if of != kind:
                 continue
             score, head = Score(rows), heads[0]
-            everything += rows
+            building = sum(h["build_seconds"] for h in heads)
+            everything, seconds = everything + rows, seconds + score.seconds + building
             complete = score.counted() + score.equal + score.outside == head["mutants"]
             tree = head["commit"] + (" and changes" if head["dirty"] else "")
+            if any(h["source"] != hash_of(ROOT / h["file"]) for h in heads):
+                tree += ", stale"
             lines.append("| " + " | ".join(map(str, [
                 f"`{name}`", head["mutants"], len(rows), score.equal, score.outside, score.alive,
-                *score.cells(complete), f"{score.seconds + sum(h['build_seconds'] for h in heads):.0f}", head["seed"],
-                tree])) + " |")
+                *score.cells(complete), f"{score.seconds + building:.0f}", head["seed"], tree])) + " |")
         score = Score(everything)
         lines.append("| " + " | ".join(map(str, [
             "together", sum(h[0]["mutants"] for (of, _), (h, _) in results.items() if of == kind), len(everything),
-            score.equal, score.outside, score.alive, *score.cells(False), f"{score.seconds:.0f}", "", ""])) + " |")
+            score.equal, score.outside, score.alive, *score.cells(False), f"{seconds:.0f}", "", ""])) + " |")
         lines += ["", "### Survivors", ""]
         if score.alive == 0:
             lines.append("None.")

@@ -46,11 +46,12 @@ class Judge:
         self.built, self.lock = set(), threading.Lock()
 
     def inputs(self):
-        """A hash of all that decides: the mutated file, the programs as built, the proof, where places are found."""
+        """A hash of all that decides: the mutated file, the programs as built, the proof, these tools."""
         programs = {t.program for stage in self.stages for t in stage.tests}
         proof = self.root / f"testbench/formal/{self.module.proof}.sv"
+        tools = [*sorted(FOLDER.glob("*.py")), FOLDER.parent / "prove.py"]
         return hash_of(self.source, *(self.tree / "bin" / p for p in sorted(programs)),
-                       proof if self.module.proof else "", repr(self.module), FOLDER / "verilog.py")
+                       proof if self.module.proof else "", repr(self.module), *tools)
 
     def write(self, chosen):
         """The file with `chosen` in it, of which build() makes programs."""

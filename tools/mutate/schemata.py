@@ -18,21 +18,6 @@ class Verilog:
         return f"begin if ({wanted}) {inner} end"
 
 
-class C:
-    """The number is a variable that mutant_number.c defines."""
-
-    head = "extern int brick_mutant_number;\n"
-    number = "brick_mutant_number"
-
-    def expression(self, mutants, inner):
-        chosen = "".join(f"{self.number} == {m.number} ? ({m.place.new}) : " for m in mutants)
-        return f"({chosen}({inner}))"
-
-    def statement(self, mutants, inner):
-        wanted = " && ".join(f"{self.number} != {m.number}" for m in mutants)
-        return f"{{ if ({wanted}) {inner} }}"
-
-
 def write(source, mutants, language):
     """The text with all of `mutants` in it. What a mutant puts in its place is the original text below it: one number
     is chosen at a time."""

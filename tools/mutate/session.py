@@ -33,22 +33,26 @@ class Session:
         self.path = records.path_of("rtl", judge.module.name, options.part)
         self.inputs = judge.inputs()
         self.rows, self.faults, self.begin = {}, [], time.monotonic()
-        self.known = self.read_known()
+        self.count = None if options.all else options.count or DEFAULT_COUNT
+        self.known, self.whole = self.read_known()
         self.tree = tree()
 
     def read_known(self):
-        """{number: row} of results that have the same inputs."""
+        """{number: row} of results that have the same inputs, and whether they are all that is asked for."""
         if not self.path.exists():
-            return {}
+            return {}, False
         head, rows = records.read(self.path)
-        return {row["number"]: row for row in rows} if head["inputs"] == self.inputs else {}
+        if head["inputs"] != self.inputs:
+            return {}, False
+        whole = head.get("done", False) and (head["count"], head["seed"]) == (self.count, self.options.seed)
+        return {row["number"]: row for row in rows}, whole
 
     def is_fresh(self):
-        return bool(self.known)
+        return self.whole
 
     def run(self):
         options = self.options
-        first, rest = draw(self.judge.mutants, None if options.all else options.count or DEFAULT_COUNT, options.seed)
+        first, rest = draw(self.judge.mutants, self.count, options.seed)
         if options.part:
             k, n = options.part
             first, rest = first[k - 1::n], rest[k - 1::n]
@@ -69,7 +73,7 @@ class Session:
                         self.save(taken)
             self.save(taken)
             self.control(pool, taken)
-        self.save(taken)
+        self.save(taken, done=True)
 
     def counted(self, taken):
         return sum(self.rows[m.number]["status"] != EQUAL for m in taken)
@@ -83,11 +87,11 @@ class Session:
             if verdict.status == EQUAL:
                 self.faults.append(mutant.number)
 
-    def save(self, taken):
+    def save(self, taken, done=False):
         head = {"module": self.judge.module.name, "file": self.judge.module.file, "inputs": self.inputs,
                 "source": hash_of(self.judge.source),
-                "seed": self.options.seed, "mutants": len(self.judge.mutants), "all": self.options.all,
-                **self.tree,
+                "seed": self.options.seed, "mutants": len(self.judge.mutants), "count": self.count,
+                "done": done, **self.tree,
                 "time": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
                 "build_seconds": round(self.judge.build_seconds, 1),
                 "seconds": round(time.monotonic() - self.begin, 1), "equal_yet_killed": self.faults}

@@ -119,7 +119,7 @@ def regress_kinds():
     wanted.update({f"odd.seed-{n}": "failed" if n % 2 else "passed" for n in range(1, 6)})
     check(verdicts == wanted, f"{verdicts}")
     report = folder.report()
-    check(report["counts"] == {"runs": 13, "passed": 4, "failed": 9, "not_run": 0}, str(report["counts"]))
+    check(report["counts"] == {"runs": 13, "passed": 4, "failed": 9, "skipped": 0, "not_run": 0}, str(report["counts"]))
     odd, smoke = bucket(report, "odd"), bucket(report, "smoke")
     check(len(odd) == 1 and odd[0]["seeds"] == [1, 3, 5] and odd[0]["says"] == "step #: Error: # and #", str(odd))
     check(len(smoke) == 1 and smoke[0]["count"] == 2 and smoke[0]["step"] == "servo period #, ticks", str(smoke))
@@ -254,6 +254,45 @@ def regress_rank():
     check(any(name.startswith("bus: 104, ") for name in covers), "rules of the bus by region")
 
 
+def regress_skips():
+    """A command that ends with 77 lacks something: no failure, but said wherever results are."""
+    folder = Folder('[[row]]\nname = "n"\ncommand = ["sh", "-c", "echo no lintian; exit {seed}"]\n'
+                    'seeds = [0, 77]\n')
+    r = folder.regress()
+    check(r.returncode == 0 and "SKIP: no lintian" in r.stdout and "2 runs, 0 failed, 1 skipped" in r.stdout, f"{r}")
+    report = folder.report()
+    check(report["verdict"] == "passed" and folder.verdicts()["n.seed-77"] == "skipped", str(report))
+    check(report["counts"] == {"runs": 2, "passed": 1, "failed": 0, "skipped": 1, "not_run": 0}, str(report["counts"]))
+    check([(b["verdict"], b["says"]) for b in report["buckets"]] == [("skipped", "no lintian")], str(report["buckets"]))
+    suite = xml.parse(folder.out / "report.xml").getroot()[0]
+    check([suite.get(k) for k in ("failures", "errors", "skipped")] == ["0", "0", "1"], "JUnit")
+    folder.write(folder.plan.read_text().replace("[0, 77]", "[1, 77]"))
+    r = folder.regress("--resume")
+    check(r.returncode == 1 and "1 taken over" in r.stdout, f"a failure beside it: {r}")
+
+
+def regress_foreign():
+    """A run.json or words of somebody else, of any form, are no steps and no covers; every run has its verdict."""
+    files = ('{"steps": 5}', '{"steps": [5]}', '{"steps": [{"name": 3}]}', '{"simulated_ns": "long"}', "[1]", "{",
+             '{"covers": {"a": 3}}', '{"covers": [1]}', '{"covers": {"a": {"count": "x"}}}', '{"covers": 5}',
+             '{"covers": {"b": {"count": 1, "least": 0}}}')
+    folder = Folder('[[row]]\nname = "own"\n'
+                    'command = ["sh", "-c", "cp {plan}/$(({seed} / 2)).json run.json; exit $(({seed} % 2))"]\n'
+                    f'seeds = "0-{2 * len(files) - 1}"\n'
+                    '[[row]]\nname = "words"\ncommand = ["sh", "-c", "cat {plan}/words; exit 1"]\n')
+    for number, text in enumerate(files):
+        (folder.path / f"{number}.json").write_text(text)
+    (folder.path / "words").write_bytes(b"FAIL \xf9" + "é".encode() * 200)
+    r = folder.regress("--rank")
+    wanted = {f"own.seed-{n}": "failed" if n % 2 else "passed" for n in range(2 * len(files))}
+    check(r.returncode == 1 and folder.verdicts() == {**wanted, "words.seed-1": "failed"}, f"{r}")
+    covers = {c["name"]: (c["counts"], c["least"]) for c in folder.report()["covers"]}
+    check(covers == {"b": ({"own": 1}, 1)}, f"covers: {covers}")
+    check(folder.report()["ranked"][0]["adds"] == 1.0, "a least of nothing asks for one")
+    # 300 bytes: 9 of `FAIL <F9>`, which is a number here, and 145 times two; the next would be cut
+    check(bucket(folder.report(), "words")[0]["says"] == "FAIL <#>" + 145 * "é" + "...", "cut between characters")
+
+
 def sleepers(mark):
     found = []
     for process in pathlib.Path("/proc").glob("[0-9]*"):
@@ -291,7 +330,8 @@ def regress_killed():
         else:
             check(r.returncode == 1 and "2 not run: --resume makes them" in said,
                   f"{kind.name}: {r.returncode} {said}")
-            check(folder.report()["counts"] == {"runs": 5, "passed": 3, "failed": 0, "not_run": 2}, "counts")
+            wanted = {"runs": 5, "passed": 3, "failed": 0, "skipped": 0, "not_run": 2}
+            check(folder.report()["counts"] == wanted, "counts")
         folder.write(plan.replace(f"sleep {mark}", "true"))
         r = folder.regress("--resume")
         check(r.returncode == 0 and "3 taken over" in r.stdout, f"resumed: {r}")
@@ -336,16 +376,21 @@ NodeName={host} NodeAddr=127.0.0.1 CPUs=4
 PartitionName=main Nodes=ALL Default=YES
 """)
         os.environ["SLURM_CONF"] = str(folder / "slurm.conf")
-        self.running = []
-        for daemon in daemons:
-            with open(folder / f"{pathlib.Path(daemon).name}.log", "w") as log:
-                self.running.append(subprocess.Popen([daemon, "-D"], stdout=log, stderr=log))
+        self.folder, self.daemons, self.running = folder, daemons, []
 
     def said(self, *words):
         return subprocess.run(words, capture_output=True, text=True).stdout
 
     def __enter__(self):
-        wait_for(lambda: "idle" in self.said("sinfo", "--noheader"), "no node is idle")
+        try:
+            for daemon in self.daemons:  # which end with us, whatever kills us
+                with open(self.folder / f"{pathlib.Path(daemon).name}.log", "w") as log:
+                    self.running.append(subprocess.Popen(["setpriv", "--pdeathsig", "KILL", daemon, "-D"],
+                                                         stdout=log, stderr=log))
+            wait_for(lambda: "idle" in self.said("sinfo", "--noheader"), "no node is idle")
+        except BaseException:
+            self.__exit__()
+            raise
         return self
 
     def __exit__(self, *_):
@@ -363,13 +408,15 @@ def alike(report):
 
 
 def regress_slurm():
-    """On a cluster the report is the same; a task that is killed costs its run alone, and --resume makes that."""
+    """On a cluster the report is the same; a task that is killed costs its run alone, and --resume makes that. A call
+    that is killed leaves its array, which the next one ends."""
     plan = ('[[row]]\nbench = "smoke"\nseeds = 31\n[[row]]\nbench = "smoke"\nnegative = true\nseeds = 41\n'
             '[[row]]\nname = "odd"\ncommand = ["sh", "-c", "echo step {seed}: Error: 0x1F; exit $(({seed} % 2))"]\n'
             'seeds = "1-9"\n[[row]]\nname = "crash"\ncommand = ["sh", "-c", "kill -SEGV $$"]\n'
             '[[row]]\nname = "slow"\ncommand = ["sh", "-c", "test -e {plan}/quick || sleep 60"]\n'
             '[[row]]\nname = "late"\ncommand = ["sleep", "60"]\nlimit = "300ms"\n')
     folder = Folder(plan)
+    folder.out = folder.path / "50%a $(touch slurm_was_here) 'out"
     (folder.path / "cluster").mkdir()
     with Slurm(folder.path / "cluster") as slurm:
         on_cluster = ("--slurm", "--task-seconds", "2", "--jobs", "3", "--no-replay", "--fresh-from", "7")
@@ -383,6 +430,8 @@ def regress_slurm():
         number = slow[0].split("-")[1].split(".")[0]
         slurm.said("scancel", f"{(tasks / 'job.txt').read_text().strip()}_{number}")
         said, _ = r.communicate(timeout=60)
+        check(not pathlib.Path("slurm_was_here").exists(), "a shell has read the name of the folder")
+        check(all((tasks / name).with_suffix(".txt").exists() for name in files), f"{list(tasks.iterdir())}")
         check(r.returncode == 1 and "1 not run: --resume makes them" in said, f"a task was killed: {said}")
         check(folder.verdicts()["slow.seed-1"] == "not run", "what was killed has a verdict")
         check(not (tasks / "job.txt").exists() and not slurm.said("squeue", "--noheader"), "somebody still works")
@@ -394,9 +443,39 @@ def regress_slurm():
         folder.regress("--no-replay", "--jobs", "2", "--fresh-from", "7")
         here = alike(folder.report())
         check(on_it == here, f"another report than the local one: {on_it}\n{here}")
+        (folder.path / "quick").unlink()
+        folder.out = folder.path / "killed"
+        r = subprocess.Popen([command.BRICK, "regress", str(folder.plan), "-o", str(folder.out), *on_cluster])
+        wait_for((folder.out / "runs/slow.seed-1").exists, "the slow one does not run")
+        r.kill()
+        r.wait()
+        job = (folder.out / "slurm/job.txt").read_text().strip()
+        check(slurm.said("squeue", "--noheader", f"--jobs={job}"), "the array has ended with the call")
+        (folder.path / "quick").touch()
+        r = folder.regress("--resume", *on_cluster)
+        check(alike(folder.report()) == here, f"after a kill: {r}")
+        check(not slurm.said("squeue", "--noheader"), "the array of the call that was killed still works")
         os.environ["PATH"] = ""
         r = folder.regress("--slurm")
         check(r.returncode == 2 and "sbatch: " in r.stderr and "expected a cluster" in r.stderr, f"no cluster: {r}")
+
+
+def regress_left_over():
+    """The array of a call that was killed: ended, or unknown to the cluster by now; a cluster that does not answer may
+    still run it, so nothing begins then and the next call asks again."""
+    for says, status in (("Invalid job id specified", 0), ("Unable to contact slurm controller", 2)):
+        folder = Folder('[[row]]\nname = "n"\ncommand = ["true"]\n')
+        programs, job = folder.path / "bin", folder.out / "slurm/job.txt"
+        for place in (programs, job.parent):
+            place.mkdir(parents=True)
+        for name in ("scancel", "squeue"):
+            (programs / name).write_text(f"#!/bin/sh\necho {name}: error: {says} >&2\nexit 1\n")
+            (programs / name).chmod(0o755)
+        job.write_text("7\n")
+        r = subprocess.run([command.BRICK, "regress", str(folder.plan), "-o", str(folder.out)], capture_output=True,
+                           text=True, timeout=60, env={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"})
+        check(r.returncode == status and job.exists() == (status == 2), f"{says}: {r}")
+        check(status == 0 or (says in r.stderr and not (folder.out / "runs").exists()), f"{says}: {r}")
 
 
 globals()[command.CASE]()

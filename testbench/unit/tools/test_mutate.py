@@ -20,11 +20,15 @@ except ImportError:
 import equal  # noqa: E402
 import mutant  # noqa: E402
 import plan  # noqa: E402
+import proofs  # noqa: E402
 import records  # noqa: E402
 import report  # noqa: E402
 import runner  # noqa: E402
 import schemata  # noqa: E402
+import session  # noqa: E402
 import verilog  # noqa: E402
+
+import rtl  # noqa: E402
 
 MODULE = b"""// \xc2\xb5s in a comment: places are bytes
 module m #(parameter int Width = 4) (input wire logic clk_i, rst_ni, input wire logic [3:0] a_i, output logic [3:0] q);
@@ -171,11 +175,59 @@ class Equal(unittest.TestCase):
             self.assertTrue(judge.equal(root / "mutant.sv", root / "same"))
 
 
+    def test_only_the_two_clocks_are_made_by_the_bench(self):
+        port = {"direction": "input", "bits": [1]}
+        judge = equal.Filter(pathlib.Path(), "c", "c.sv", pathlib.Path(tempfile.gettempdir()), 30)
+        judge.ports = {"clk_ref_i": port, "clk_ce_i": port, "clk_o": {**port, "direction": "output"}}
+        text, prepare = judge.bench()
+        self.assertIn("input wire [0:0] clk_ref_i, input wire [0:0] clk_ce_i", text)
+        self.assertEqual(prepare, equal.ONE)
+
+
+class Proofs(unittest.TestCase):
+    def test_a_rule_without_an_answer_hides_no_other(self):
+        answers = {"R1": proofs.prove.Failed("no answer"), "R2": None, "R3": 7}
+        solvers, rules = mock.Mock(), mock.Mock(english=list(answers), edits=[])
+        solvers.search.side_effect = list(answers.values())
+        with mock.patch.multiple(proofs.prove, Rules=lambda *_: rules, Solvers=lambda *_: solvers,
+                                 build=lambda *_: "stem"):
+            self.assertEqual(proofs.refuted(None, "m", "m.sv", "a", "b", pathlib.Path(tempfile.gettempdir()), 1), "R3")
+
+
+class Fresh(unittest.TestCase):
+    def fresh(self, head, **options):
+        judge = mock.Mock(module=mock.Mock(), **{"inputs.return_value": "x"})
+        judge.module.name = "m"
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
+            records.write(records.path_of("rtl", "m", None), head, [{"number": 1}])
+            return session.Session(judge, mock.Mock(**{"part": None, "all": False, "count": None, "seed": 1,
+                                                       **options})).is_fresh()
+
+    def test_results_are_fresh_when_they_are_whole_and_of_the_same_drawing(self):
+        head = {"inputs": "x", "done": True, "count": session.DEFAULT_COUNT, "seed": 1}
+        self.assertTrue(self.fresh(head))
+        for other in ({"done": False}, {"count": 20}, {"count": None}, {"seed": 2}, {"inputs": "y"}):
+            self.assertFalse(self.fresh({**head, **other}), other)
+        self.assertTrue(self.fresh({**head, "count": None}, all=True))
+
+    def test_what_judges_is_an_input(self):
+        module = plan.choose("rtl", ["ssi_edges"])[0]
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "bin").mkdir()
+            judge = rtl.Judge(TOOLS.parent, pathlib.Path(folder), module)
+            for tests in {t.program for stage in judge.stages for t in stage.tests}:
+                (judge.tree / "bin" / tests).write_text("")
+            with mock.patch.object(rtl, "hash_of", lambda *parts: parts):
+                parts = judge.inputs()
+        for name in ("mutate/runner.py", "mutate/verilog.py", "mutate/schemata.py", "prove.py"):
+            self.assertIn(TOOLS / name, parts)
+
+
 class Reports(unittest.TestCase):
     ROW: ClassVar = {"number": 1, "file": "rtl/m.sv", "line": 4, "text": "a & b", "operator": "operator",
-                     "change": "a & b => a | b", "repeat": 0, "status": "alive", "stage": "", "by": "", "seconds": 1.0}
-    HEAD: ClassVar = {"mutants": 9, "seed": 1, "commit": "c", "dirty": False, "build_seconds": 1.0,
-                      "equal_yet_killed": []}
+                     "change": "a & b => a | b", "repeat": 0, "status": "alive", "stage": "", "by": "", "seconds": 2.0}
+    HEAD: ClassVar = {"file": "rtl/ssi/ssi_edges.sv", "source": "?", "mutants": 9, "seed": 1, "commit": "c",
+                      "dirty": False, "build_seconds": 1.0, "equal_yet_killed": []}
 
     def problems(self, row, given, head=None):
         return report.problems_of({("rtl", "m"): ([{**self.HEAD, **(head or {})}], [{**self.ROW, **row}])}, given)
@@ -202,6 +254,15 @@ class Reports(unittest.TestCase):
         # 140 of 150, z 1.6449: (0.93333 + 0.00902 - 1.6449 * sqrt(0.06222 + 0.00451) / sqrt(150)) / 1.01804
         self.assertAlmostEqual(report.wilson(140, 150), 0.8916, places=4)
         self.assertEqual(report.wilson(0, 0), 0.0)
+
+    def test_of_a_file_that_has_changed_since_results_are_stale(self):
+        row = {**self.ROW, "status": "killed", "stage": "tests"}
+        results = {("rtl", name): ([{**self.HEAD, "source": source}], [row]) for name, source in (
+            ("now", mutant.hash_of(TOOLS.parent / self.HEAD["file"])), ("before", "0123456789abcdef"))}
+        text = report.page(results, {})
+        self.assertRegex(text, r"`now` .* 3 \| 1 \| c \|")
+        self.assertRegex(text, r"`before` .* 3 \| 1 \| c, stale \|")
+        self.assertRegex(text, r"together .* 6 \|  \|  \|")  # with the second that each was building
 
     def test_score_leaves_equal_and_outside_out(self):
         rows = [{**self.ROW, "status": s, "stage": t} for s, t in (
