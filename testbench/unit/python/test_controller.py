@@ -105,6 +105,7 @@ def test_a_pin_of_the_plant_is_held_and_given_back(moving):
 
 
 def test_waits_have_a_simulated_and_a_wall_limit(moving):
+    moving["P1"] = 12
     begin = moving.time_ns
     with pytest.raises(brick.SimulatedTimeout):
         moving.wait_signal("host.breq", 1, ms=3)
