@@ -53,8 +53,9 @@ static uint8_t checksum(const char* text, uint32_t count) {
 }
 
 /* A line that turns acknowledging by ACK on or off is acknowledged by ACK itself: both what a client that goes by the
- * old setting and what one that goes by the new setting waits for. */
-static void acknowledge(int32_t style_before, uint8_t sum) {
+ * old setting and what one that goes by the new setting waits for. A function of its own for who debugs: it is where
+ * an answer ends (docs/debugging.md). */
+static __attribute__((noinline)) void acknowledge(int32_t style_before, uint8_t sum) {
   const int32_t style = i_integer(I3_IO_HANDSHAKE);
   if (style >= 2 || style_before >= 2)
     host_port_send(ACKNOWLEDGE);

@@ -20,6 +20,7 @@ enum { LAST_POINTS = 3 }; /* the first and the last point of a sequence stand so
 static void add_points(uint32_t cs, const struct path_point* point) {
   const bool looks = sequences[cs].looks; /* the lookahead buffer has the older ones */
   path_motors_look(cs, point);
+  slice_pause();
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     int64_t* points = segment_control[motor];
