@@ -359,14 +359,21 @@ void protection_take_turn(void) {
   protection_watched = foreground ? UINT32_MAX : overload_watched | urgent_watched;
 }
 
-void protection_look(uint32_t motor) {
-  if ((overload_watched >> motor & 1u) != 0u) overload_servo(motor);
-  if (protection_takes_turns() && (urgent_watched >> motor & 1u) != 0u && is_urgent(motor)) {
-    asked = true;
-    hal_request_real_time();
-  }
-  if (!foreground) return;
+/* Apart, so that what is done about each motor in each interrupt is quicker. */
+static __attribute__((noinline)) void look_urgent(uint32_t motor) {
+  if (!protection_takes_turns() || !is_urgent(motor)) return;
+  asked = true;
+  hal_request_real_time();
+}
+
+static __attribute__((noinline)) void look_foreground(uint32_t motor) {
   const struct motor* m = &motors[motor];
   motors[motor].found.foreground_in_position =
       m->loop == LOOP_CLOSED && is_in_position(motor, m->commanded - m->actual, m->desired_step);
+}
+
+void protection_look(uint32_t motor) {
+  if ((overload_watched >> motor & 1u) != 0u) overload_servo(motor);
+  if ((urgent_watched >> motor & 1u) != 0u) look_urgent(motor);
+  if (foreground) look_foreground(motor);
 }
