@@ -12,7 +12,7 @@ void jog_rests(struct jog* j) {
 void jog_post(uint32_t motor, const struct jog_motion* request) {
   struct jog* j = &jogs[motor];
   struct motor_status_flags* status = &motors[motor].status;
-  if ((jogs_busy & jog_bit(motor)) == 0u) j->rate = jog_rate_of(motor, request->by_program);
+  if ((jogs_busy & jog_bit(motor)) == 0u) j->rate = jog_rate_of(&motors[motor], request->by_program);
   j->request = *request;
   j->request_begins = j->clock + j->delay;
   j->requests++;

@@ -11,6 +11,7 @@
 #include "firmware/base/dimensions.h"
 #include "firmware/motion/capture.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/own_path.h"
 #include "firmware/motion/speed_profile.h"
@@ -47,25 +48,23 @@ struct jog {
 };
 
 extern struct jog jogs[MOTORS];
-/* A bit a motor: S has something to do, R has. Changed with the servo task held off, and by it. */
-extern volatile uint32_t jogs_busy, jogs_asked;
+/* A bit a motor: R has something to do. Changed with the servo task held off, and by it. */
+extern volatile uint32_t jogs_asked;
 
 static inline uint32_t jog_bit(uint32_t motor) { return 1u << motor; }
 static inline struct jog_motion* jog_now(struct jog* j) { return &j->motions[j->current]; }
 static inline struct jog_motion* jog_next(struct jog* j) { return &j->motions[j->current ^ 1u]; }
 
 /* What it does, at rest what it waits for. */
-static inline bool jog_by_program(struct jog* j) {
-  const struct jog_motion* now = jog_now(j);
-  FIXED_IN_REGISTER(now);
-  return now->aim == AIM_REST ? j->request.by_program : now->by_program;
+static inline const struct jog_motion* jog_present(const struct jog* j) {
+  const struct jog_motion* now = &j->motions[j->current];
+  return now->aim == AIM_REST ? &j->request : now;
 }
 
 /* Trajectory time a servo cycle, 0 or more. What no program moves goes on while the system is held: it takes the time
  * base as commanded. */
-static inline int32_t jog_rate_of(uint32_t motor, bool by_program) {
-  const struct coordinate_system* s = &coordinate_systems[motors[motor].cs];
-  FIXED_IN_REGISTER(s);
+static inline int32_t jog_rate_of(const struct motor* m, bool by_program) {
+  const struct coordinate_system* s = &coordinate_systems[m->cs];
   return s->held && !by_program ? s->increment_command : s->increment;
 }
 

@@ -77,9 +77,14 @@ void overload_servo(uint32_t motor) {
     add_linear(o, current);
 }
 
+bool overload_is_too_much_now(uint32_t motor) {
+  const struct overload* o = &overloads[motor];
+  return o->most != 0 && o->sum > o->most;
+}
+
 bool overload_is_too_much(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const bool too_much = overloads[motor].most != 0 && overloads[motor].sum > overloads[motor].most;
+  const bool too_much = overload_is_too_much_now(motor);
   hal_unmask(state);
   return too_much;
 }

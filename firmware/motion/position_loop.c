@@ -78,6 +78,7 @@ void position_loop_initialize(void) {
 /* Where a source stands now is no movement. */
 static void put(struct loop* l, const struct loop* next) {
   if (l->one_source) l->velocity_reading = l->position_reading;
+  l->integral = clamp(l->integral, next->integral_most);
   if (next->position_source != l->position_source) l->position_reading = *next->position_source;
   if (next->velocity_source != l->velocity_source) l->velocity_reading = *next->velocity_source;
   if (l->left > next->extension) l->left = next->extension;
@@ -130,7 +131,8 @@ void position_loop_restart(uint32_t motor) {
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */
 
-static bool is_small(int64_t value) { return value == (int32_t)value; }
+/* As nearly every number is. */
+static inline bool is_small(int64_t value) { return __builtin_expect(value == (int32_t)value, 1); }
 
 static int32_t saturated(int64_t value) {
   if (value > INT32_MAX) return INT32_MAX;
@@ -142,7 +144,7 @@ static void measure(struct motor* m, struct loop* l) {
   const uint32_t position = *l->position_source;
   const int64_t moved = (int64_t)hal_signed(position - l->position_reading) * m->position_scale;
   l->position_reading = position;
-  if (l->forgets != 0u)
+  if (__builtin_expect(l->forgets != 0u, 0))
     l->forgets--;
   else
     m->actual += moved;
@@ -158,7 +160,7 @@ static void measure(struct motor* m, struct loop* l) {
 /* FINER. */
 static void integrate(struct loop* l, int64_t error, int64_t rest) {
   const int64_t integrand = clamp(l->integrates_velocity ? rest + error : error, l->integrand_most);
-  l->integral += l->integral_gain * integrand >> FINER;
+  l->integral = clamp(l->integral + (l->integral_gain * integrand >> FINER), l->integral_most);
 }
 
 static bool integrates(const struct loop* l, bool moves) {
@@ -174,8 +176,8 @@ static inline int64_t with_gain(const struct loop* l, int64_t sum) {
 
 /* What a clip leaves of an output, and whether it had to. */
 static void put_out(struct motor* m, struct loop* l, int64_t output) {
-  const int32_t most = l->output_most;
-  const int32_t clipped = output > most ? most : output < -most ? -most : (int32_t)output;
+  const int32_t most = l->output_most, whole = is_small(output) ? (int32_t)output : saturated(output);
+  const int32_t clipped = whole > most ? most : whole < -most ? -most : whole;
   m->output = clipped;
   l->saturated = clipped == most || clipped == -most;
 }
@@ -187,7 +189,6 @@ static int64_t pid(const struct motor* m, struct loop* l, int64_t step) {
   if (l->deadband_gain != 0) error += l->deadband_gain * clamp(limited, l->deadband) * (1 << (FINER - DEADBAND_BITS));
   const int64_t rest = l->velocity_forward * step - (int64_t)l->derivative * m->velocity;
   if (integrates(l, step != 0)) integrate(l, error, rest);
-  l->integral = clamp(l->integral, l->integral_most);
   int64_t sum = error + rest + (l->integral >> (INTEGRAL_BITS - FINER));
   if (l->acceleration_forward != 0) sum += l->acceleration_forward * clamp(step - l->step, STEP_MOST);
   return with_gain(l, sum);
@@ -243,13 +244,8 @@ static inline bool close_simple_loop(uint32_t motor, struct motor* m, struct loo
   int64_t sum = (int64_t)error * (1 << FINER) - (int64_t)l->derivative * m->velocity;
   if (step != 0) sum += (int64_t)l->velocity_forward * step;
   if ((int32_t)change != 0) sum += (int64_t)l->acceleration_forward * (int32_t)change;
-  int64_t integral = l->integral;
-  if (integrates(l, step != 0)) integral += (int64_t)l->integral_gain * error;
-  if (integral != 0) {
-    integral = clamp(integral, l->integral_most);
-    sum += integral >> (INTEGRAL_BITS - FINER);
-    l->integral = integral;
-  }
+  if (integrates(l, step != 0)) l->integral = clamp(l->integral + (int64_t)l->integral_gain * error, l->integral_most);
+  sum += l->integral >> (INTEGRAL_BITS - FINER);
   const int64_t finer = with_gain(l, sum);
   l->filtered = finer;
   int64_t output = finer >> NOTCH_FINER;
