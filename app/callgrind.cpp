@@ -48,7 +48,8 @@ void Callgrind::write(std::ostream& out, const std::string& image, const std::st
     return name.empty() ? std::string(kUnknown) : name;
   };
   const std::string version = version_text();
-  out << "# callgrind format\nversion: 1\ncreator: " << version.substr(0, version.find('\n')) << "\ncmd: " << image << '\n';
+  out << "# callgrind format\nversion: 1\ncreator: " << version.substr(0, version.find('\n')) << '\n';
+  out << "cmd: " << image << '\n';
   std::istringstream lines(about);
   for (std::string line; std::getline(lines, line);) out << "desc: " << line << '\n';
   out << "positions: line\nevents: Cycles Background RealTime HostPort Servo Phase\n";

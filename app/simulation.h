@@ -90,7 +90,7 @@ class Simulation {
   std::unique_ptr<PlantSignals> plant_signals_;
   std::unique_ptr<GdbServer> debugger_;
   std::unique_ptr<TimingBook> timing_;
-  std::unique_ptr<Profile> profile_;  // ends before the machine, whose hooks it takes
+  std::unique_ptr<Profile> profile_;    // ends before the machine, whose hooks it takes
   std::unique_ptr<Recorder> recorder_;  // ends before timing_, whose callbacks it calls on
   const std::optional<std::string> forced_bcr_;
   TimingWaivers waivers_;
