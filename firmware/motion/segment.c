@@ -47,7 +47,12 @@ void segment_stop(uint32_t cs) {
   if (segment_is_busy(cs)) sequences[cs].stops = true;
 }
 
-void segment_go_on(uint32_t cs) { sequences[cs].stops = false; }
+bool segment_is_left(uint32_t cs) { return paths[cs].count != 0; }
+
+void segment_go_on(uint32_t cs, bool one_move) {
+  sequences[cs].stops = false;
+  sequences[cs].one_move = one_move;
+}
 
 /* Isx21 */
 static void show(uint32_t cs, uint32_t state) {

@@ -43,34 +43,11 @@ TEST_F(LookaheadOrders, AStepStaysAStepUntilR) {
     }
 }
 
-// S ends a run behind the moves that are calculated: PC is the line of the next one, before and after.
-TEST_F(LookaheadOrders, SLetsTheCalculatedMovesFinish) {
-  Lines lines = {"TM100 TA20 TS0 INC"};
-  for (int i = 0; i < 30; ++i) lines.emplace_back("X2");
-  begin(lines);
-  ASSERT_EQ(host("&1B1R"), "");
-  wait_ms(300);
-  ASSERT_EQ(host("&1S"), "");
-  const std::string next = host("&1PC");
-  const double from = at(1);
-  wait_ms(1500);
-  EXPECT_FALSE(run_is_running(0));
-  EXPECT_EQ(host("&1PC"), next);
-  const int made = static_cast<int>(at(1)) / 2000;
-  EXPECT_EQ(motors[0].trajectory, made * 2000 * 3072) << "at the end of a move";
-  EXPECT_EQ(next, "P1:" + std::to_string(4 + made)) << "statements: TM, TA, TS, INC, and a move each";
-  EXPECT_GE(at(1), from + 20 * kAhead * kSegmentMs - 500) << "20 counts/ms; what is made is calculated";
-  EXPECT_LT(made, 15);
-  ASSERT_EQ(host("&1R"), "");
-  wait_ms(4000);
-  EXPECT_EQ(motors[0].trajectory, 60000 * 3072);
-}
-
-// Q and `/`: the move in which the last segment lies that is made; what is calculated behind it waits for R.
+// Q, `/` and S: the move in which the last segment lies that is made; what is calculated behind it waits for R.
 TEST_F(LookaheadOrders, QuitStopsAtTheEndOfTheMoveThatIsMade) {
   Lines lines = {"TM100 TA20 TS0 INC"};
   for (int i = 0; i < 30; ++i) lines.emplace_back("X2");
-  for (const char* command : {"&1Q", "&1/"}) {
+  for (const char* command : {"&1Q", "&1/", "&1S"}) {
     SCOPED_TRACE(command);
     begin(lines);
     ASSERT_EQ(host("&1B1R"), "");
