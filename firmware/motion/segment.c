@@ -112,7 +112,7 @@ static bool go_ahead(uint32_t cs, bool alone) {
   if (q->order != LOOKAHEAD_NONE) obey(cs);
   if (q->made && lookahead_is_over(cs)) {
     segment_ring_hand_over(cs);
-    q->runs = q->order != LOOKAHEAD_NONE; /* the same */
+    q->runs = false;
     return true;
   }
   const uint32_t ahead = segment_ring_ahead(cs);

@@ -2,6 +2,11 @@
 // (motion:7.1/8, motion:7.1/9, motion:7.5).
 #include "testbench/unit/firmware_program/moving_motors.h"
 
+extern "C" {
+#include "firmware/motion/segment.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
+}
+
 namespace {
 
 using namespace moving_motors;
@@ -89,6 +94,51 @@ TEST_F(LookaheadOrders, PeIsTheLineThatExecutesBackwardsToo) {
   ASSERT_EQ(host("&1>"), "");
   EXPECT_EQ(go(1500), 7u);
   EXPECT_EQ(motors[0].trajectory, 15000 * 3072);
+}
+
+// At every pause of the interrupt that hands over the last pieces, and of those about it: an order is obeyed that was
+// accepted, be it given while the sequence is found to be over.
+TEST_F(LookaheadOrders, AnOrderThatMeetsTheLastPieceIsObeyed) {
+  const auto start = [](unsigned ticks) {
+    begin({"TM200 TA20 TS0", "X5"});
+    ASSERT_EQ(host("I5195=200000 I115=1 &1B1R"), "");
+    platform::servo_ticks(ticks);
+  };
+  start(ticks_of(100));
+  unsigned last = ticks_of(100);
+  for (; segment_is_under_way(0); ++last) platform::servo_ticks(1);
+  unsigned backward = 0;
+  for (const char* order : {"<", "\\", ">", "H", "Q", "A", "S"})
+    for (unsigned before = 0; before < 3; ++before)
+      for (unsigned at_pause = 1, pauses = 1; pauses >= at_pause; ++at_pause) {
+        SCOPED_TRACE(std::string(order) + " at pause " + std::to_string(at_pause) + ", " + std::to_string(before));
+        start(last - 1 - before);
+        fake_task_run_servo();
+        pauses = 0;
+        bool looks = false;
+        platform::real_time_in_slices([&] {
+          if (++pauses != at_pause) return;
+          looks = segment_looks(0);
+          ASSERT_EQ(host(std::string("&1") + order), "");
+        });
+        if (pauses < at_pause) break;
+        wait_ms(600);
+        const bool back = *order == '<' && looks, aborted = *order == 'A';
+        backward += back;
+        if (back) {
+          ASSERT_EQ(motors[0].trajectory, 0);
+          ASSERT_TRUE(run_is_running(0));
+        }
+        if (aborted) {
+          ASSERT_FALSE(run_is_running(0));
+          continue;
+        }
+        if (run_is_running(0)) { ASSERT_EQ(host("&1>"), ""); }
+        wait_ms(600);
+        ASSERT_EQ(motors[0].trajectory, 5000 * 3072);
+        ASSERT_FALSE(run_is_running(0)) << "it begins anew";
+      }
+  EXPECT_GT(backward, 10u);
 }
 
 }  // namespace
