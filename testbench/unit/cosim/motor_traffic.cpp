@@ -113,8 +113,10 @@ void MotorTraffic::bus_step() {
       if (reset_at_ != kNever) break;
       if (options_.reset_one_in != 0 && one_in(options_.reset_one_in)) {
         reset_at_ = bus_at_ + below(20);
-      } else if (bus_at_ >= options_.silent_at || (options_.reset_one_in != 0 && one_in(10 * options_.reset_one_in))) {
+      } else if (bus_at_ >= options_.silent_at ||
+                 (options_.may_trip && options_.reset_one_in != 0 && one_in(10 * options_.reset_one_in))) {
         options_.silent_at = kNever;
+        options_.may_trip = false;
         bus_at_ += kTripTime;
         reset_at_ = bus_at_ + below(200'000);
       }
