@@ -12,7 +12,7 @@ import tomllib
 import plan
 import records
 from common import ROOT
-from mutant import hash_of
+from mutant import source_hash
 from runner import ALIVE, EQUAL, KILLED, OUTSIDE
 
 PAGE = ROOT / "docs/mutation.md"
@@ -27,19 +27,22 @@ HEAD = """# Mutants
 What would the tests notice? A mutant is the source with one place changed: an operator, a comparison, a constant, a
 case item, an enable, a reset, a condition, a statement left out. `./dev mutate rtl NAME` finds the places with slang's
 parser, puts many mutants into one Verilated model, of which a number chooses one, and runs the module's tests on each;
-number 0 is the module as it is and passes. The first failure stops.
+`./dev mutate firmware FOLDER` does so with Clang's parser, the native build of the firmware and the tests that come to
+the place. Number 0 is the source as it is and passes. The first failure stops.
 
-- **score**: killed of killed and alive. The mutant stands in the RTL alone and every comparison of RTL and model is
-  off: the tests have values of their own, the proof has its rules. This holds when both sides misread a rule alike.
+- **score**: killed of killed and alive. A mutant of RTL stands in the RTL alone and every comparison of RTL and model
+  is off: the tests have values of their own, the proof has its rules. This holds when both sides misread a rule alike.
 - **slip**: with lock-step and component tests on what was left: a mistake in the RTL alone.
-- **equal**: proved, without a bound, to be the module it was made from; out of the count, another takes its place.
+- **equal**: proved, without a bound, to be the module it was made from; of C, the same object code at -O2; out of the
+  count, another takes its place.
 - **outside**: ended by the wall clock or a crash without a report that names its place; out of the count too.
 - **at least**: the lower end of what the score of all mutants of the module may be, at 95 % (Wilson's interval, one
   side), from those drawn; the score itself where all were judged.
 - **stale**, at the commit: the file has changed since it was judged.
 
-Not mutated: what is fixed before a model runs (widths, parameters, generate blocks, sensitivity lists); `board_sim` and
-the test bench. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the options.
+Not mutated: what is fixed before it runs (widths, parameters, generate blocks, sensitivity lists; initial values of
+static variables, labels, macros with arguments); `board_sim` and the test bench; of the firmware what has no native
+build. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the options.
 """
 
 
@@ -65,13 +68,13 @@ class Score:
     def counted(self):
         return self.killed + self.alive
 
-    def cells(self, complete):
+    def cells(self, complete, has_slip=True):
         counted = self.counted()
         if counted == 0:
             return ["-", "-", "-"]
         low = self.killed / counted if complete else wilson(self.killed, counted)
         slip = (self.killed + self.slip_only) / counted
-        return [percent(self.killed / counted), percent(low), percent(slip)]
+        return [percent(self.killed / counted), percent(low), percent(slip) if has_slip else "-"]
 
 
 def percent(share):
@@ -140,15 +143,16 @@ def page(results, given):
             everything, seconds = everything + rows, seconds + score.seconds + building
             complete = score.counted() + score.equal + score.outside == head["mutants"]
             tree = head["commit"] + (" and changes" if head["dirty"] else "")
-            if any(h["source"] != hash_of(ROOT / h["file"]) for h in heads):
+            if any(h["source"] != source_hash(ROOT / h["file"]) for h in heads):
                 tree += ", stale"
             lines.append("| " + " | ".join(map(str, [
                 f"`{name}`", head["mutants"], len(rows), score.equal, score.outside, score.alive,
-                *score.cells(complete), f"{score.seconds + building:.0f}", head["seed"], tree])) + " |")
+                *score.cells(complete, of == "rtl"), f"{score.seconds + building:.0f}", head["seed"], tree])) + " |")
         score = Score(everything)
         lines.append("| " + " | ".join(map(str, [
             "together", sum(h[0]["mutants"] for (of, _), (h, _) in results.items() if of == kind), len(everything),
-            score.equal, score.outside, score.alive, *score.cells(False), f"{seconds:.0f}", "", ""])) + " |")
+            score.equal, score.outside, score.alive, *score.cells(False, kind == "rtl"), f"{seconds:.0f}", "",
+            ""])) + " |")
         lines += ["", "### Survivors", ""]
         if score.alive == 0:
             lines.append("None.")
