@@ -19,6 +19,7 @@ from runner import ALIVE, EQUAL, Tests, Verdict
 ZERO_LIMIT, COMPILE_LIMIT = 300, 60  # s
 QUICK = 100  # ms; tests that take longer come after all that do not
 NAMES = 300  # of tests in one call
+FEWER = {"BRICK_RANDOM_PATHS": "60"}  # of 2000, which take as long as all other tests
 TOOLS = ROOT / "tools/mutate"
 OPTIMIZED = ["-O2", "-g0", "-w"]
 
@@ -95,7 +96,8 @@ class Judge:
     def pass_zero(self, name, binary):
         """Number 0, the folder as it is."""
         table = self.out / f"{name}.reached"
-        verdict = runner.run(binary, Tests(name, "*"), 0, ZERO_LIMIT, True, self.root, BRICK_REACHED=str(table))
+        verdict = runner.run(binary, Tests(name, "*"), 0, ZERO_LIMIT, True, self.root,
+                             **FEWER, BRICK_REACHED=str(table))
         if verdict.status != ALIVE:
             raise runner.BadBuild(f"number 0, the folder as it is, does not pass: {verdict.by}")
         for line in table.read_text().splitlines():
@@ -119,7 +121,8 @@ class Judge:
         self.build()
         seconds, verdict = 0.0, Verdict(ALIVE, "", 0.0)
         for tests, ms in self.calls(mutant.number):
-            verdict = runner.run(self.built[tests.program], tests, mutant.number, 5 + ms / 100, True, self.root)
+            verdict = runner.run(self.built[tests.program], tests, mutant.number, 5 + ms / 100, True,
+                                 self.root, **FEWER)
             seconds += verdict.seconds
             if verdict.status != ALIVE:
                 break
@@ -132,7 +135,8 @@ class Judge:
         if name not in self.built:
             self.built[name] = self.overlay().build(self.programs[name], False, [self.recorder(self.programs[name])])
         tests = Tests(name, test)
-        verdicts = [runner.run(self.built[name], tests, n, ZERO_LIMIT, True, self.root) for n in (0, mutant.number)]
+        verdicts = [runner.run(self.built[name], tests, n, ZERO_LIMIT, True, self.root, **FEWER)
+                    for n in (0, mutant.number)]
         if verdicts[0].status != ALIVE:
             raise runner.BadBuild(f"number 0, the folder as it is, does not pass: {verdicts[0].by}")
         return verdicts[1]
