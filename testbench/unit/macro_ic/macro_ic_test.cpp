@@ -102,8 +102,8 @@ TYPED_TEST(MacroIcOn, PhaseAndServoPeriodsAreExactToTheTick) {
     SCOPED_TRACE(::testing::Message() << "I6800=" << max_count << " I6801=" << phase_div << " I6802=" << servo_div);
     this->drive(max_count, phase_div, servo_div);
     this->rig.run(3 * (2 * 6527 + 3) * 16);  // past everything that still ran with the setting before
-    EXPECT_TRUE(this->rig.phase_oe());
-    EXPECT_TRUE(this->rig.servo_oe());
+    ASSERT_TRUE(this->rig.phase_oe()) << "no edge would come";
+    ASSERT_TRUE(this->rig.servo_oe());
     const Tick phase = Tick{2 * max_count + 3} * (phase_div + 1);
     const Tick fall = this->rig.edge_of(&ServoIcRig::phase, false);
     EXPECT_EQ(this->rig.edge_of(&ServoIcRig::phase, false) - fall, phase);
