@@ -3,7 +3,8 @@
   mutate rtl pic_8259              150 mutants of the module, drawn evenly; all where there are fewer
   mutate firmware motion           the same of a folder of the firmware
   mutate rtl --changed --resume    modules whose inputs differ from those of their results
-  mutate report [--check]          docs/mutation.md from results/mutation; --check: it is fresh, each survivor explained
+  mutate report [--check]          docs/mutation.md from results/mutation; --check: it is fresh, no reason is of a dead
+                                   mutant; --release: and each survivor has one
   mutate again [--count 20]        mutants that the results have as killed; each must die again
 Exit status: 0 done, 1 number 0 fails, something cannot be built or a check fails, 2 there is no such thing.
 """
@@ -47,6 +48,7 @@ def arguments():
     parser.add_argument("--control", type=int, default=50, metavar="N",
                         help="killed mutants that the filter must not prove equal (50)")
     parser.add_argument("--check", action="store_true", help="report: write nothing")
+    parser.add_argument("--release", action="store_true", help="report: open survivors fail")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release", help="the built tree")
     parser.add_argument("--jobs", type=positive, default=int(os.environ.get("BRICK_JOBS", os.cpu_count() or 2)))
     options = parser.parse_args()
@@ -91,7 +93,7 @@ def main():
     options = arguments()
     try:
         if options.kind == "report":
-            sys.exit(report.main(options.check))
+            sys.exit(report.main(options.check, options.release))
         modules = plan.choose(options.kind, options.names)
     except plan.Unknown as unknown:
         print(f"mutate: {unknown}", file=sys.stderr)

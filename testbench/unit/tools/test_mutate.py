@@ -233,13 +233,20 @@ class Reports(unittest.TestCase):
     def problems(self, row, given, head=None):
         return report.problems_of({("rtl", "m"): ([{**self.HEAD, **(head or {})}], [{**self.ROW, **row}])}, given)
 
-    def test_a_survivor_needs_its_reason(self):
+    def open(self, row, given):
+        return report.open_of({("rtl", "m"): ([self.HEAD], [{**self.ROW, **row}])}, given)
+
+    def test_a_survivor_without_its_reason_is_open(self):
         key = records.key(self.ROW)
-        self.assertIn("survivor without a reason", self.problems({}, {})[0])
+        self.assertIn("survivor without a reason", self.open({}, {})[0])
+        self.assertEqual(self.open({}, {key: "it is so"}), [])
         self.assertEqual(self.problems({}, {key: "it is so"}), [])
 
     def test_what_lock_step_alone_kills_is_a_survivor_too(self):
-        self.assertIn("survivor without a reason", self.problems({"status": "killed", "stage": "slip"}, {})[0])
+        self.assertIn("survivor without a reason", self.open({"status": "killed", "stage": "slip"}, {})[0])
+
+    def test_more_than_a_twentieth_outside_is_open(self):
+        self.assertIn("outside the score", self.open({"status": "outside", "stage": "tests"}, {})[0])
 
     def test_a_reason_for_a_dead_mutant_is_a_problem(self):
         key = records.key(self.ROW)
