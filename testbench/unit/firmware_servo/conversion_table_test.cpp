@@ -167,6 +167,10 @@ TEST_F(ConversionTable, ParallelWordsReachIntoTheNextAddress) {
   EXPECT_EQ(signed_result(4), 0x432) << "of X, for $7 too";
   table("2810F0 001080");
   EXPECT_EQ(once(1), 0) << "bits that are not there";
+  table("2810F0 018000");
+  EXPECT_NE(once(1), 0);
+  table("2810F0 019000");
+  EXPECT_EQ(once(1), 0) << "25 bits are more than a result has";
 }
 
 TEST_F(ConversionTable, ALimitedStepCatchesUp) {
