@@ -218,7 +218,7 @@ TEST_F(JogProfile, LongMoveAtASmallSpeedStaysWithinASixteenthOfACount) {
   EXPECT_FALSE(jog_is_moving(0));
 }
 
-// A stay is parts of 8192 ms and what is left: three parts are over before the stop that waits for them begins.
+// A stay is parts of 8192 ms and what is left: asked for in the second of three, begun behind them.
 TEST_F(JogProfile, AStopBeginsBehindTheLastWholePartOfAStay) {
   const Limits l{1, 0, 10, 1};
   set(l, 400);
@@ -226,12 +226,12 @@ TEST_F(JogProfile, AStopBeginsBehindTheLastWholePartOfAStay) {
   ASSERT_TRUE(jog_to(0, units(30000)));
   Followed result;
   const Motion way = jog_model::to_target(l, {0, 0}, 30000);
-  follow(Motion({0, 0}), 0, way, 400, 190, result);
-  const double elapsed = 190 * step_ms() - 400, ixx92 = 1000;
-  ASSERT_TRUE(elapsed < 3 * 8192 && elapsed + ixx92 > 3 * 8192 + 20);
-  set(l, 1000);
+  follow(Motion({0, 0}), 0, way, 400, 105, result);
+  const double elapsed = 105 * step_ms() - 400, ixx92 = 12000;
+  ASSERT_TRUE(elapsed > 8192 + 20 && elapsed < 2 * 8192 && elapsed + ixx92 > 3 * 8192 + 20);
+  set(l, 12000);
   ASSERT_TRUE(jog_stop(0));
-  follow(way, elapsed, jog_model::at_speed(l, way.at(elapsed + ixx92), 0), ixx92, 20, result);
+  follow(way, elapsed, jog_model::at_speed(l, way.at(elapsed + ixx92), 0), ixx92, 115, result);
   EXPECT_FALSE(jog_is_moving(0));
 }
 
