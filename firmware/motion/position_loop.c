@@ -144,15 +144,17 @@ static void measure(struct motor* m, struct loop* l) {
   const uint32_t position = *l->position_source;
   const int64_t moved = (int64_t)hal_signed(position - l->position_reading) * m->position_scale;
   l->position_reading = position;
-  if (__builtin_expect(l->forgets != 0u, 0))
-    l->forgets--;
-  else
-    m->actual += moved;
   int64_t speed = moved;
   if (!l->one_source) {
     const uint32_t velocity = *l->velocity_source;
     speed = (int64_t)hal_signed(velocity - l->velocity_reading) * m->velocity_scale;
     l->velocity_reading = velocity;
+  }
+  if (__builtin_expect(l->forgets != 0u, 0)) {
+    l->forgets--;
+    speed = 0;
+  } else {
+    m->actual += moved;
   }
   m->velocity = is_small(speed) ? (int32_t)speed : saturated(speed);
 }
