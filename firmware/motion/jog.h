@@ -31,9 +31,6 @@ bool jog_stop_at(uint32_t motor, double deceleration);
 void jog_drop(uint32_t motor);          /* nothing moves it any more: killed, open loop, stopped on the spot */
 void jog_program_takes(uint32_t motor); /* a program moves it from now on: PATH_SYSTEM */
 
-/* A bit a motor: the servo task has something to do for it. Changed with the servo task held off, and by it. */
-extern volatile uint32_t jogs_busy;
-
 /* Any task. More of it stands in the motor's status flags (motion/motor.h). */
 bool jog_is_moving(uint32_t motor);     /* on its way, or about to be */
 bool jog_is_of_program(uint32_t motor); /* so, and a program waits for it, held or not */

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "firmware/motion/jog.h"
+#include "firmware/motion/motor.h"
 
 void jog_move(uint32_t motor);
 

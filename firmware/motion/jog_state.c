@@ -1,7 +1,7 @@
 #include "firmware/motion/jog_state.h"
 
 struct jog jogs[MOTORS];
-volatile uint32_t jogs_busy, jogs_asked;
+volatile uint32_t jogs_asked;
 
 void jog_rests(struct jog* j) {
   struct jog_motion* now = jog_now(j);

@@ -11,7 +11,6 @@
 #include "firmware/base/dimensions.h"
 #include "firmware/motion/capture.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/own_path.h"
 #include "firmware/motion/speed_profile.h"
