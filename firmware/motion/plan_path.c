@@ -149,6 +149,7 @@ static void set_time_anew(uint32_t cs, struct path_move* m) {
   double time;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
     if (m->delta[axis] != 0.0) moving |= 1u << axis;
+  slice_pause();
   if (!(m->feed > 0.0) || !feed_time(cs, m, moving, &time)) return;
   const int64_t wanted = path_time(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS);
   path_set_time(m, wanted > least ? wanted : least);
