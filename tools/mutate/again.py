@@ -10,7 +10,7 @@ from common import GIT, ROOT
 from mutant import source_hash
 from runner import KILLED
 
-COUNT, FILES = 20, 4  # of one module; files are what is built
+COUNT = 20  # of one module
 NAMED = re.compile(r"\S+: [^\s.]+\.\S+$")  # by a test that has a name, not a sanitizer's report
 
 
@@ -28,9 +28,12 @@ def choose(modules, picks):
 
 
 def draw(mutants, picks, count):
-    files = sorted({m.file for m in mutants})
-    files = picks.sample(files, min(FILES, len(files)))
-    there = [m for m in mutants if m.file in files]
+    """Of no more files than are needed: each is compiled."""
+    files, there = sorted({m.file for m in mutants}), []
+    picks.shuffle(files)
+    while files and len(there) < count:
+        file = files.pop()
+        there += [m for m in mutants if m.file == file]
     return picks.sample(there, min(count, len(there)))
 
 

@@ -55,7 +55,13 @@ TEST_F(GateIc, EachIsFoundAtItsPlaceAndKeepsItsWords) {
     for (std::uint32_t address = kIcs[n].base; address < kIcs[n].base + 0x20; ++address)
       *hal_x(address) = 0x123000 + address;
     const auto before = words(kIcs[n]);
+    fake_hal_clear_writes();
     gate_ic_find();
+    const fake_write* log = nullptr;
+    for (unsigned i = fake_hal_writes(&log); i-- > 0;)
+      EXPECT_TRUE(log[i].address < kIcs[n].base + 0x20 || log[i].address >= kIcs[n].base + 0x40 ||
+                  log[i].address == kIcs[n].base + 0x20 + 0x14)
+          << std::hex << log[i].address << ": behind its page only the ADC strobe of the next is tried";
     EXPECT_EQ(gate_ic_found(), 1u << n);
     EXPECT_EQ(gate_ic_configuration(), 1u << n);
     for (unsigned other = 0; other < kIcs.size() + 2; ++other) EXPECT_EQ(gate_ic_present(other), other == n) << other;
