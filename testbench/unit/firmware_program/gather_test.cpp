@@ -116,7 +116,7 @@ TEST_F(Gather, ALongSourceTakesAWholeWordBetweenShortOnes) {
   ASSERT_EQ(host("DEF UBUF 10"), "");
   for (const auto& [mask, lines] : {std::pair{"3", 4U}, std::pair{"7", 3U}}) {
     ASSERT_EQ(host("DEL GAT WX$107F6,$555555 I5001=$400000 I5002=$800020 I5003=$400000 I5049=1"), "");
-    ASSERT_EQ(host(std::string("I5050=") + mask + " DEF GAT 5 GATHER"), "");
+    ASSERT_EQ(host(std::string("I5050=") + mask + " DEF GAT 4 GATHER"), "");
     servo_ticks(20);
     EXPECT_FALSE(gathers());
     EXPECT_EQ(host_lines("LIST GATHER").size(), lines);

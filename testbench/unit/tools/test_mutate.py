@@ -270,6 +270,7 @@ class Reports(unittest.TestCase):
         text = report.page(results, {})
         self.assertRegex(text, r"`now` .* 3 \| 1 \| c \|")
         self.assertRegex(text, r"`before` .* 3 \| 1 \| c, stale \|")
+        self.assertEqual(report.unmarked(text).count("3 | 1 | c |"), 2)
         self.assertRegex(text, r"together .* 6 \|  \|  \|")  # with the second that each was building
 
     def test_score_leaves_equal_and_outside_out(self):
