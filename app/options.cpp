@@ -110,6 +110,10 @@ void add_plant_options(CLI::App& command, RunOptions& o) {
                   "the columns, with blanks between: signals, motorN.commanded and the like, M definitions (default: "
                   "commanded, actual, error of each motor, BREQ)")
       ->type_name("COLUMNS");
+  command
+      .add_option("--profile", o.profile,
+                  "write where the firmware's cycles go to FILE, by function and task (docs/profile.md)")
+      ->type_name("FILE");
 }
 
 std::uint64_t parse_count(const std::string& option, const std::string& text) {
@@ -177,6 +181,7 @@ MachineConfig machine_config(const RunOptions& o) {
     Recorder::check_name(o.record);
     need_folder("--record", o.record);
   }
+  if (!o.profile.empty()) need_folder("--profile", o.profile);
   wave_window(o);
   trace_groups(o);
   return config;

@@ -28,6 +28,7 @@ struct RunOptions {
   std::string plant = "none";
   std::string load;               // "" = nothing is sent first
   std::string record, record_of;  // "" = no record, the usual columns
+  std::string profile;            // "" = none
   std::vector<std::string> jumpers;
   std::string flash;
   std::string json;
@@ -43,7 +44,7 @@ struct RunOptions {
 // Adds --engine, --board and so on to a command. `engine` is the default.
 void add_run_options(CLI::App& command, RunOptions& options, const std::string& engine);
 
-// Adds --plant, --load and --record to a command whose controller may have motors.
+// Adds --plant, --load, --record and --profile to a command whose controller may have motors.
 void add_plant_options(CLI::App& command, RunOptions& options);
 
 // Checks everything that can be checked without running; throws UsageError with one line.

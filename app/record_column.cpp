@@ -116,7 +116,7 @@ std::function<double()> definition(Machine& machine, const std::string& item, co
 }
 
 std::string column_name(const std::string& item, std::size_t equals) {
-  const std::string name = item.substr(0, equals);
+  std::string name = item.substr(0, equals);
   if (name.empty() || name.find('"') != std::string::npos) refuse(item, "no name before `=`");
   return name;
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -98,6 +99,7 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
     if (debugger_ && waivers_.reason(ledger, violation).empty()) debugger_->bus_error(timing_->text(ledger, violation));
   };
   if (!options.gdb.empty()) wait_for_debugger(gdb_port(options));
+  if (!options.profile.empty()) profile_ = std::make_unique<Profile>(*machine_, options.profile, config.firmware);
   if (!options.record.empty()) open_record(options.record, options.record_of);
   if (!options.wave.empty()) open_wave(options.wave, wave_window(options), trace_groups(options));
 }
@@ -135,6 +137,20 @@ void Simulation::close_record() {
   recorder_.reset();
 }
 
+void Simulation::open_profile(const std::string& file, const std::string& image) {
+  if (image.empty())
+    throw UsageError(fmt::format("--profile {}: no firmware runs in {}; expected no --profile", file, title_));
+  profile_ = std::make_unique<Profile>(*machine_, file, image);
+}
+
+void Simulation::close_profile() {
+  if (!profile_) return;
+  profile_->close();
+  std::istringstream lines(profile_->text());
+  for (std::string line; std::getline(lines, line);) tell(line);
+  profile_.reset();
+}
+
 void Simulation::wait_for_debugger(std::uint16_t port) {
   try {
     debugger_ = std::make_unique<GdbServer>(machine_->cpu(), port);
@@ -170,6 +186,7 @@ void Simulation::run(const std::function<void()>& host) {
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   close_wave();
   close_record();
+  close_profile();
   clear_progress();
   if (thread.error()) std::rethrow_exception(thread.error());
 }

@@ -14,6 +14,7 @@
 
 #include "app/options.h"
 #include "app/plant_signals.h"
+#include "app/profile.h"
 #include "app/recorder.h"
 #include "app/timing_waivers.h"
 #include "systemc/core/trace.h"
@@ -75,6 +76,8 @@ class Simulation {
   std::string aperture_text() const;  // "" without --aperture
 
  private:
+  void open_profile(const std::string& file, const std::string& image);
+  void close_profile();
   void wait_for_debugger(std::uint16_t port);
   std::string usual_columns() const;  // of --record
   void progress();
@@ -87,6 +90,7 @@ class Simulation {
   std::unique_ptr<PlantSignals> plant_signals_;
   std::unique_ptr<GdbServer> debugger_;
   std::unique_ptr<TimingBook> timing_;
+  std::unique_ptr<Profile> profile_;    // ends before the machine, whose hooks it takes
   std::unique_ptr<Recorder> recorder_;  // ends before timing_, whose callbacks it calls on
   const std::optional<std::string> forced_bcr_;
   TimingWaivers waivers_;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Figures and claims that stand in two places say the same: how long a SAVE takes, how fast an idle machine is, how
-many misreadings were planted, what is claimed and what the plan calls open."""
+many misreadings were planted, how many modules have proofs, what is claimed and what the plan calls open."""
 
 import argparse
 import pathlib
@@ -50,6 +50,13 @@ def check(root):
     claimed = figure(root, "docs/rules.md", r"(\d+) misreadings", problems)
     if claimed is not None and int(claimed) != planted:
         problems.append(f"docs/rules.md: {claimed} misreadings, but its rows add up to {planted}")
+
+    proofs = {path.stem for path in (root / "testbench/formal").glob("*.sv")}
+    rows = set(re.findall(r"^\| `(\w+)` \| \d+ \|", (root / "docs/formal.md").read_text(), re.M))
+    problems += [f"{name}: proved or in a row of docs/formal.md, but not both" for name in sorted(proofs ^ rows)]
+    claimed = figure(root, "docs/verification-plan.md", r"than the (\d+) of \[proofs\]", problems)
+    if claimed is not None and int(claimed) != len(proofs):
+        problems.append(f"docs/verification-plan.md: {claimed} modules with proofs, but there are {len(proofs)}")
 
     ids = {line.strip() for line in (root / "docs/claimed.txt").read_text().splitlines()}
     for number, line in enumerate((root / "docs/verification-plan.md").read_text().splitlines(), 1):

@@ -275,7 +275,8 @@ class Regression {
   }
 
   int tell(const Report& report) const {
-    const nlohmann::json content = report_json(report), counts = content.at("counts");
+    const nlohmann::json content = report_json(report);
+    const nlohmann::json& counts = content.at("counts");
     for (std::size_t b = 0; b < buckets_.size(); ++b) {
       const Bucket& bucket = buckets_[b];
       std::cout << fmt::format("{} x {}: {}{}{}\n", bucket.runs.size(), bucket.group, bucket.verdict,

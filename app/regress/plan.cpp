@@ -224,7 +224,7 @@ class Reader {
       also("--size", size, size);
     }
     if (row.flag("negative")) {
-      words.push_back("--negative");
+      words.emplace_back("--negative");
       others += " negative";
     }
     run.column = fmt::format("{} {}", choice.engine, others);

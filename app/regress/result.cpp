@@ -27,7 +27,7 @@ constexpr int kSkipped = 77;  // exit status, as ctest and automake have it
 constexpr std::streamoff kEndOfOutput = 64 * 1024;
 
 std::string shortened(const std::string& bytes) {
-  const std::string text = readable_text(bytes);
+  std::string text = readable_text(bytes);
   if (text.size() <= kLongestText) return text;
   std::size_t end = kLongestText;
   while ((text[end] & 0xC0) == 0x80) --end;  // within a character

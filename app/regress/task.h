@@ -18,7 +18,7 @@ std::string this_executable();
 void begin(Pool& pool, std::size_t id, const Run& run, const std::string& folder);
 
 struct Task {
-  struct Part {
+  struct Part {  // NOLINT(bugprone-exception-escape): a move of JSON throws for broken JSON only
     Run run;
     std::string folder;
     nlohmann::json build;  // app/build_info.h, with the image of the run

@@ -14,9 +14,24 @@ volatile uint32_t* hal_x(uint32_t address);
 volatile uint32_t* hal_y(uint32_t address);
 uint32_t hal_cycles(void); /* CPU cycle counter, low 32 bits */
 bool hal_real_time_pending(void);
+
+typedef uint32_t hal_place;
+static inline hal_place hal_place_of(uint32_t address) { return address; }
+static inline volatile uint32_t* hal_x_of(hal_place place, uint32_t further) { return hal_x(place + further); }
+static inline volatile uint32_t* hal_y_of(hal_place place, uint32_t further) { return hal_y(place + further); }
 #else
 static inline volatile uint32_t* hal_x(uint32_t address) { return (volatile uint32_t*)(0xC0000004u + 8u * address); }
 static inline volatile uint32_t* hal_y(uint32_t address) { return (volatile uint32_t*)(0xC0000000u + 8u * address); }
+
+/* Words that stand together: the address of the first stays in a register, those of the others are not worked out. */
+typedef volatile uint32_t* hal_place;
+static inline hal_place hal_place_of(uint32_t address) {
+  hal_place place = hal_y(address);
+  __asm__("" : "+r"(place));
+  return place;
+}
+static inline volatile uint32_t* hal_x_of(hal_place place, uint32_t further) { return place + 2u * further + 1u; }
+static inline volatile uint32_t* hal_y_of(hal_place place, uint32_t further) { return place + 2u * further; }
 
 #define HAL_CSR(text) ".option push\n.option arch, +zicsr\n" text "\n.option pop\n"
 

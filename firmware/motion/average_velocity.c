@@ -1,5 +1,6 @@
 /* The way of sixteen samples, I60 + 1 servo interrupts apart, divided by 2^I61: with 15 and 8 that of 256 interrupts as
- * a mean of one. */
+ * a mean of one. A motor's samples come an interrupt after those of the motor before it, so that none has
+ * all of them to take. */
 #include "firmware/motion/average_velocity.h"
 
 #include "firmware/hal/hal.h"
@@ -9,25 +10,23 @@
 enum { SAMPLES = 16, LARGEST_SHIFT = 62 };
 
 static struct { int64_t at[SAMPLES], way; } averages[MOTORS];
-static uint32_t next, left;
+static uint32_t next, turn; /* the sample, and the first motor of the interrupt */
 
 void average_velocity_initialize(void) {
   __builtin_memset(averages, 0, sizeof averages);
-  next = left = 0;
+  next = turn = 0;
 }
 
 void average_velocity_servo(void) {
-  if (left != 0u) {
-    left--;
-    return;
-  }
-  left = (uint32_t)i_integer(I60_FILTER_SAMPLE_SPACING);
-  for (uint32_t motor = 0, active = motors_active; active != 0u; ++motor, active >>= 1) {
-    if ((active & 1u) == 0u) continue;
+  const uint32_t turns = (uint32_t)i_integer(I60_FILTER_SAMPLE_SPACING) + 1u;
+  for (uint32_t motor = turn; motor < MOTORS; motor += turns) {
+    if ((motors_active >> motor & 1u) == 0u) continue;
     const int64_t actual = motors[motor].actual;
     averages[motor].way = actual - averages[motor].at[next];
     averages[motor].at[next] = actual;
   }
+  if (++turn < turns) return;
+  turn = 0;
   next = (next + 1u) % SAMPLES;
 }
 

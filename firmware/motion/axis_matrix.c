@@ -159,6 +159,8 @@ static void set_targets(uint32_t cs, const struct selection* m) {
   for (uint32_t axis = AXIS_X; axis <= AXIS_Z; axis++)
     if ((s->pending_axes >> axis & 1u) == 0) s->pending[axis] = axis_matrix_programmed(cs, axis);
   lead_back_point(m, &s->pending[AXIS_X]);
+  const bool absolute = (s->pending_axes & AXIS_XYZ & ~s->pending_absolute) == 0;
+  s->pending_absolute = absolute ? s->pending_absolute | AXIS_XYZ : s->pending_absolute & ~(uint32_t)AXIS_XYZ;
   s->pending_axes |= AXIS_XYZ;
 }
 

@@ -5,14 +5,9 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
-#include "firmware/motion/phase_motor.h"
-#include "firmware/motion/phase_task.h"
 
-enum { TO_CURRENT = CURRENT_FRACTION_BITS - 15 - OUTPUT_FRACTION_BITS };
 enum { ADVANCE_SHIFT = 16, SLIP_SHIFT = 16 }; /* 2^-48 of a cycle to an angle; 2^-40 to 2^-24 of a unit */
 enum { PART_BITS = 24 };                      /* of the phase position's fraction */
-
-bool commutation_is_used(uint32_t motor) { return ((phase_task_work >> motor) & 1u) != 0u; }
 
 /* The phase task finds both parts of one step. */
 static void set_step(struct phase_motor* p, int32_t whole, uint32_t parts) {
@@ -31,20 +26,24 @@ static void set_long_step(struct phase_motor* p, int64_t step) {
   set_step(p, (int32_t)(step >> PART_BITS), (uint32_t)step & HAL_WORD_MASK);
 }
 
+/* Of micro-steps, and of slip. */
+static __attribute__((noinline)) void turn(struct phase_motor* p, int32_t output) {
+  const struct phase_settings* s = &p->settings;
+  if (s->micro_stepping)
+    set_long_step(p, (int64_t)output * s->multiplier * (1 << (PART_BITS - OUTPUT_FRACTION_BITS)));
+  else
+    set_long_step(p, (int64_t)output * s->slip_gain >> SLIP_SHIFT);
+}
+
+/* The call is the last thing, so that what does not need it saves no registers. */
 void commutation_command(uint32_t motor, int32_t output) {
   struct phase_motor* p = &phase_motors[motor];
   const struct phase_settings* s = &p->settings;
   if (!p->enabled || p->searched) return;
   p->d.command = s->magnetisation;
-  if (s->micro_stepping) {
-    const int64_t step = (int64_t)output * s->multiplier;
-    p->q.command = 0;
-    set_long_step(p, step * (1 << (PART_BITS - OUTPUT_FRACTION_BITS)));
-    return;
-  }
-  p->q.command = output * (1 << TO_CURRENT);
-  set_long_step(p, (int64_t)output * s->slip_gain >> SLIP_SHIFT);
-  p->advance = (uint32_t)((int64_t)motors[motor].velocity * s->advance_gain >> ADVANCE_SHIFT);
+  p->q.command = s->micro_stepping ? 0 : output * (1 << COMMUTATION_TO_CURRENT);
+  if (!s->micro_stepping) p->advance = (uint32_t)((int64_t)motors[motor].velocity * s->advance_gain >> ADVANCE_SHIFT);
+  if (s->micro_stepping || s->slip_gain != 0 || p->step != 0 || p->step_parts != 0u) turn(p, output);
 }
 
 void commutation_enable(uint32_t motor, bool enabled) {
@@ -58,11 +57,4 @@ void commutation_enable(uint32_t motor, bool enabled) {
   p->q.command = p->q.integrator = p->d.integrator = 0;
   p->d.command = enabled ? p->settings.magnetisation : 0;
   hal_unmask(state);
-}
-
-struct motor_current commutation_current(uint32_t motor) {
-  const struct phase_motor* p = &phase_motors[motor];
-  const bool is_measured = p->settings.current_loop;
-  const int32_t q = is_measured ? p->q.actual : p->q.command, d = is_measured ? p->d.actual : p->d.command;
-  return (struct motor_current){q >> TO_CURRENT, d >> TO_CURRENT};
 }

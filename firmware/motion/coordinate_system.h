@@ -144,7 +144,7 @@ struct coordinate_system {
   int64_t last_time;
   double carry[AXIS_COUNT];   /* what incremental moves have lost by rounding of the position: none adds up */
   double pending[AXIS_COUNT]; /* targets of the line being calculated */
-  uint32_t pending_axes;
+  uint32_t pending_axes, pending_absolute;                          /* of those: by ABS */
   double pending_velocity[AXIS_COUNT], pending_trigger[AXIS_COUNT]; /* behind `:` and `^`: units a Isx90, units */
   uint32_t pending_velocities, pending_triggers;
   double pending_vector[ARC_VECTORS]; /* I, J, K, R of a CIRCLE line */

@@ -30,7 +30,7 @@ static struct path {
   bool down;         /* direction of the last movement */
 } paths[MOTORS];
 
-static uint32_t with_something;        /* bit n: motor n follows, holds back, or has a filter or backlash. V */
+uint32_t desired_position_extras;
 static volatile uint32_t backlash_due; /* bit n: that of motor n may move. B sets all, S clears */
 
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
@@ -74,8 +74,8 @@ void desired_position_motor_changed(uint32_t motor) {
   p->error_most = saturates ? position_of(motor, variable(motor, IXX67_POSITION_ERROR_LIMIT)) : 0;
   if (p->error_most == 0) motors[motor - 1u].held_back = 0;
   const uint32_t bit = 1u << (motor - 1u);
-  with_something &= ~bit;
-  if (follows || share != 0u || p->backlash_rate != 0 || p->error_most != 0) with_something |= bit;
+  desired_position_extras &= ~bit;
+  if (follows || share != 0u || p->backlash_rate != 0 || p->error_most != 0) desired_position_extras |= bit;
   if (p->backlash_rate == 0) motors[motor - 1u].compensation += p->taken_up;
   if (p->backlash_rate == 0) p->taken_up = 0;
   hal_unmask(state);
@@ -166,7 +166,9 @@ static int32_t saturated(int64_t value) {
   return value < INT32_MIN ? INT32_MIN : (int32_t)value;
 }
 
-static __attribute__((noinline)) void with_extras(uint32_t motor, struct motor* m, struct path* p) {
+void desired_position_with_extras(uint32_t motor) {
+  struct motor* m = &motors[motor];
+  struct path* p = &paths[motor];
   if (p->follows) follow(m, p);
   m->compensation = 0;
   if ((compensation_of_position >> motor & 1u) != 0u) m->compensation = -compensation_position(motor);
@@ -178,16 +180,6 @@ static __attribute__((noinline)) void with_extras(uint32_t motor, struct motor* 
   if (p->follows || p->error_most != 0) publish_master(motor, m);
   m->desired_step = saturated(wanted - m->commanded);
   m->commanded = wanted;
-}
-
-void desired_position_servo(uint32_t motor) {
-  struct motor* m = &motors[motor];
-  FIXED_IN_REGISTER(m);
-  if (m->loop != LOOP_CLOSED) return; /* the loop keeps it where the motor is */
-  if (((with_something | compensation_of_position) >> motor & 1u) != 0u) return with_extras(motor, m, &paths[motor]);
-  const int64_t wanted = m->trajectory + m->master - m->compensation, step = wanted - m->commanded;
-  m->commanded = wanted;
-  m->desired_step = step == (int32_t)step ? (int32_t)step : step > 0 ? INT32_MAX : INT32_MIN;
 }
 
 bool desired_position_backlash_is_down(uint32_t motor) { return paths[motor].down; }

@@ -46,13 +46,6 @@ static inline int32_t fixed_high(int32_t a, int32_t b) {
 #endif
 }
 
-/* value * fraction, rounded downwards. */
-static inline int64_t fixed_part(int64_t value, uint32_t fraction) {
-  const int64_t high = (int64_t)(int32_t)(value >> 32) * (int64_t)fraction;
-  const uint64_t low = (uint64_t)(uint32_t)value * fraction;
-  return high + (int64_t)(low >> 32);
-}
-
 /* The same of a number without a sign. */
 static inline int32_t fixed_high_mixed(int32_t a, uint32_t b) {
 #ifdef BRICK_NATIVE
@@ -62,6 +55,14 @@ static inline int32_t fixed_high_mixed(int32_t a, uint32_t b) {
   __asm__("mulhsu %0, %1, %2" : "=r"(high) : "r"(a), "r"(b));
   return high;
 #endif
+}
+
+/* value * fraction, rounded downwards. */
+static inline int64_t fixed_part(int64_t value, uint32_t fraction) {
+  const int32_t high = (int32_t)(value >> 32);
+  const uint32_t least = (uint32_t)((uint64_t)(uint32_t)value * fraction >> 32);
+  const uint64_t product = (uint64_t)(uint32_t)fixed_high_mixed(high, fraction) << 32 | (uint32_t)high * fraction;
+  return (int64_t)(product + least);
 }
 
 /* value * part, rounded to nearest; |value| < 2^61. */

@@ -44,9 +44,9 @@ static void leave_position(uint32_t motor) {
 
 /* Who stops a motor asks again and again while it moves: that must not put the ramp off. */
 static bool stops_already(uint32_t motor) {
-  const struct jog* j = &jogs[motor];
+  struct jog* j = &jogs[motor];
   const bool waits = j->ready || (jogs_asked & jog_bit(motor)) != 0u;
-  return waits ? j->request.aim == AIM_RAMP : motors[motor].path == PATH_OWN && j->now.aim == AIM_RAMP;
+  return waits ? j->request.aim == AIM_RAMP : motors[motor].path == PATH_OWN && jog_now(j)->aim == AIM_RAMP;
 }
 
 /* Further into a limit that the motor stands in: the command is taken and moves nothing. */
@@ -149,7 +149,7 @@ static void nothing_moves(uint32_t motor) {
   status->timed_move = status->aborting = status->home_search = false;
   jogs[motor].ready = false;
   jogs[motor].requests++;
-  jogs[motor].now = (struct jog_motion){.aim = AIM_REST};
+  jog_rests(&jogs[motor]);
   jogs_busy &= ~jog_bit(motor);
   jogs_asked &= ~jog_bit(motor);
 }
@@ -170,9 +170,12 @@ void jog_program_takes(uint32_t motor) {
 
 bool jog_is_moving(uint32_t motor) { return (jogs_busy & jog_bit(motor)) != 0u; }
 
-bool jog_is_of_program(uint32_t motor) { return jog_is_moving(motor) && jog_by_program(&jogs[motor]); }
+bool jog_is_of_program(uint32_t motor) { return jog_is_moving(motor) && jog_present(&jogs[motor])->by_program; }
 
-bool jog_is_homing(uint32_t motor) { return jogs[motor].now.homes && jogs[motor].now.searches; }
+bool jog_is_homing(uint32_t motor) {
+  const struct jog_motion* now = jog_now(&jogs[motor]);
+  return now->homes && now->searches;
+}
 
 int64_t jog_commanded(uint32_t motor) {
   const uint32_t state = hal_mask_servo();

@@ -110,7 +110,7 @@ static bool hand_over(uint32_t motor, struct beginning* b) {
   struct jog* j = &jogs[motor];
   const bool alone = b->motion.together == 0u;
   if (j->requests != b->requests || (alone && j->clock > b->begins)) return false;
-  j->next = b->motion;
+  *jog_next(j) = b->motion;
   j->next_begins = alone ? b->begins : INT64_MAX;
   j->ready = true;
   jogs_asked &= ~jog_bit(motor);
@@ -127,7 +127,8 @@ static void begin_together(uint32_t motors_of_it) {
   }
   for (uint32_t left = motors_of_it; left != 0u; left &= left - 1u) {
     struct jog* j = &jogs[__builtin_ctz(left)];
-    if (j->ready && j->next.together != 0u) j->next_begins = j->clock + longest; /* else something else is asked for */
+    if (j->ready && jog_next(j)->together != 0u)
+      j->next_begins = j->clock + longest; /* else something else is asked for */
   }
   waiting &= ~motors_of_it;
 }
@@ -135,7 +136,7 @@ static void begin_together(uint32_t motors_of_it) {
 static void begin_waiting(void) {
   const uint32_t state = hal_mask_servo();
   for (uint32_t left = waiting; left != 0u;) {
-    const uint32_t first = left & -left, together = jogs[__builtin_ctz(left)].next.together | first;
+    const uint32_t first = left & -left, together = jog_next(&jogs[__builtin_ctz(left)])->together | first;
     if ((together & jogs_asked) == 0u) begin_together(together & waiting);
     left &= ~together;
   }

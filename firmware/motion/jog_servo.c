@@ -21,26 +21,28 @@ static bool searches_without_end(const struct jog_motion* motion) { return motio
 static bool change_over(uint32_t motor) {
   struct jog* j = &jogs[motor];
   struct motor* m = &motors[motor];
+  FIXED_IN_REGISTER(j);
+  FIXED_IN_REGISTER(m);
   struct own_path* path = &j->paths[j->current ^ 1u];
-  const bool as_planned = j->next.aim != AIM_RAMP || m->path != PATH_SYSTEM;
+  const struct jog_motion* next = jog_next(j);
+  const bool as_planned = next->aim != AIM_RAMP || m->path != PATH_SYSTEM;
   if (!as_planned) path->shift = m->trajectory - path->start;
   j->current ^= 1u;
-  j->now = j->next;
   j->ready = false;
   m->path = PATH_OWN;
-  m->status.timed_move = !searches_without_end(&j->now);
-  m->status.aborting = j->now.aim == AIM_RAMP;
-  m->status.home_search = j->now.searches;
-  if (j->now.searches) capture_arm(&j->now.capture);
+  m->status.timed_move = !searches_without_end(next);
+  m->status.aborting = next->aim == AIM_RAMP;
+  m->status.home_search = next->searches;
+  if (next->searches) capture_arm(&next->capture);
   return as_planned;
 }
 
 static void found(uint32_t motor, int64_t position) {
   struct jog* j = &jogs[motor];
   struct motor_status_flags* status = &motors[motor].status;
-  const bool homes = j->now.homes;
-  struct jog_motion then = j->now;
-  j->now.searches = false;
+  struct jog_motion then = *jog_now(j);
+  const bool homes = then.homes;
+  jog_now(j)->searches = false;
   status->home_search = status->trigger_move = false;
   then.aim = AIM_TARGET;
   then.searches = false;
@@ -58,19 +60,19 @@ static void found(uint32_t motor, int64_t position) {
   jog_post(motor, &then);
 }
 
-static void over(uint32_t motor) {
+static __attribute__((noinline)) void over(uint32_t motor) {
   struct jog* j = &jogs[motor];
   struct motor_status_flags* status = &motors[motor].status;
   motors[motor].path = PATH_STANDS;
   status->timed_move = status->aborting = status->home_search = false;
-  j->now = (struct jog_motion){.aim = AIM_REST};
+  jog_rests(j);
   if (!j->ready && (jogs_asked & jog_bit(motor)) == 0u) jogs_busy &= ~jog_bit(motor);
 }
 
 /* What only few interrupts have to do stands apart: the rest is quicker without. */
 static __attribute__((noinline)) void search(uint32_t motor) {
   int64_t position;
-  if (capture_servo(motor, &jogs[motor].now.capture, &position)) found(motor, position);
+  if (capture_servo(motor, &jog_now(&jogs[motor])->capture, &position)) found(motor, position);
 }
 
 static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t target) {
@@ -78,30 +80,34 @@ static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t targ
   return approach(jogs[motor].rate, target, slew);
 }
 
-static __attribute__((noinline)) bool begins(uint32_t motor, int64_t* elapsed) {
+/* What of this interrupt belongs to the new path; below 0: it has not begun. */
+static __attribute__((noinline)) int32_t begins(uint32_t motor) {
   const int64_t since = jogs[motor].clock - jogs[motor].next_begins;
-  if (since < 0) return false;
-  *elapsed = change_over(motor) ? since : 0;
-  return true;
+  if (since < 0) return -1;
+  return change_over(motor) ? (int32_t)since : 0;
 }
 
-static __attribute__((noinline)) void move(uint32_t motor) {
+void jog_move(uint32_t motor) {
   struct jog* j = &jogs[motor];
   struct motor* m = &motors[motor];
-  const int32_t target = jog_rate_of(motor, jog_by_program(j));
+  FIXED_IN_REGISTER(j);
+  FIXED_IN_REGISTER(m);
+  const struct coordinate_system* s = &coordinate_systems[m->cs];
+  FIXED_IN_REGISTER(s);
+  const int32_t target = s->held ? jog_rate_of(m, jog_present(j)->by_program) : s->increment;
   if (m->loop != LOOP_CLOSED) {
     jog_drop(motor);
     return;
   }
   if (j->rate != target) j->rate = other_rate(motor, target);
-  int64_t elapsed = j->rate;
+  int32_t elapsed = j->rate;
   j->clock += elapsed;
-  if (!(j->ready && begins(motor, &elapsed)) && m->path != PATH_OWN) return; /* a program moves it still, or nobody */
+  const int32_t since = j->ready ? begins(motor) : -1;
+  if (since >= 0)
+    elapsed = since;
+  else if (m->path != PATH_OWN) /* a program moves it still, or nobody */
+    return;
   const bool goes_on = own_path_advance(&j->paths[j->current], elapsed, &m->trajectory);
-  if (j->now.searches) search(motor);
+  if (m->status.home_search) search(motor);
   if (!goes_on) over(motor);
-}
-
-void jog_servo(uint32_t motor) {
-  if ((jogs_busy & jog_bit(motor)) != 0u) move(motor);
 }

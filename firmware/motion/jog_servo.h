@@ -4,6 +4,13 @@
 
 #include <stdint.h>
 
-void jog_servo(uint32_t motor); /* the trajectory of a motor on PATH_OWN, and whether it gets one */
+#include "firmware/motion/motor.h"
+
+void jog_move(uint32_t motor);
+
+/* The trajectory of a motor on PATH_OWN, and whether it gets one. */
+static inline void jog_servo(uint32_t motor) {
+  if ((jogs_busy >> motor & 1u) != 0u) jog_move(motor);
+}
 
 #endif

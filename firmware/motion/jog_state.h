@@ -10,6 +10,8 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/motion/capture.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/motor.h"
 #include "firmware/motion/own_path.h"
 #include "firmware/motion/speed_profile.h"
 
@@ -31,11 +33,12 @@ struct jog_motion {
 struct jog {
   int64_t clock;       /* S */
   int32_t rate;        /* S: trajectory time a servo cycle */
-  volatile bool ready; /* R: `next` and its path are complete; S: it is on it */
-  uint32_t current;    /* S: of the paths */
+  volatile bool ready; /* R: the next motion and its path are complete; S: it is on it */
+  uint32_t current;    /* S: of motions and paths */
   int64_t next_begins;
-  struct jog_motion now, next, request; /* S; R; Q */
+  struct jog_motion motions[2]; /* that under way, and of `next`: one is S's and the other R's, as of the paths */
   struct own_path paths[2];
+  struct jog_motion request;  /* Q */
   volatile uint32_t requests; /* so far, whatever makes R plan anew */
   int64_t request_begins;     /* earliest clock */
   int64_t delay;              /* Ixx92, of the last request */
@@ -44,12 +47,27 @@ struct jog {
 };
 
 extern struct jog jogs[MOTORS];
-/* A bit a motor: S has something to do, R has. Changed with the servo task held off, and by it. */
-extern volatile uint32_t jogs_busy, jogs_asked;
+/* A bit a motor: R has something to do. Changed with the servo task held off, and by it. */
+extern volatile uint32_t jogs_asked;
 
 static inline uint32_t jog_bit(uint32_t motor) { return 1u << motor; }
-int32_t jog_rate_of(uint32_t motor, bool by_program);            /* trajectory time a servo cycle, 0 or more */
-bool jog_by_program(const struct jog* j);                        /* what it does, at rest what it waits for */
-void jog_post(uint32_t motor, const struct jog_motion* request); /* servo task held off, or in it */
+static inline struct jog_motion* jog_now(struct jog* j) { return &j->motions[j->current]; }
+static inline struct jog_motion* jog_next(struct jog* j) { return &j->motions[j->current ^ 1u]; }
+
+/* What it does, at rest what it waits for. */
+static inline const struct jog_motion* jog_present(const struct jog* j) {
+  const struct jog_motion* now = &j->motions[j->current];
+  return now->aim == AIM_REST ? &j->request : now;
+}
+
+/* Trajectory time a servo cycle, 0 or more. What no program moves goes on while the system is held: it takes the time
+ * base as commanded. */
+static inline int32_t jog_rate_of(const struct motor* m, bool by_program) {
+  const struct coordinate_system* s = &coordinate_systems[m->cs];
+  return s->held && !by_program ? s->increment_command : s->increment;
+}
+
+void jog_rests(struct jog* j);                                   /* servo task held off, or in it: at AIM_REST */
+void jog_post(uint32_t motor, const struct jog_motion* request); /* the same */
 
 #endif

@@ -264,6 +264,8 @@ static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
     slice_pause();
     load_next(l, &p, p.last);
     to = limits_most(far_end(l), l->rate, *rate_at(l, p.knot));
+    /* where rounding leaves none between what two limits ask for: the least is nearest to both */
+    if (to < 0) to = limits_least(far_end(l), l->rate, *rate_at(l, p.knot));
     if (to < 0) to = *rate_at(l, p.knot);
     if (to == 0 && l->rate == 0) {
       if (!l->backward) return false; /* for want of what comes behind it */

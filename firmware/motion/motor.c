@@ -4,7 +4,7 @@
 #include "firmware/motion/fixed_point.h"
 
 struct motor motors[MOTORS];
-volatile uint32_t motors_active, motors_enabled;
+volatile uint32_t motors_active, motors_enabled, jogs_busy;
 
 int64_t motor_position_of(uint32_t motor, double counts) {
   return math_to_integer(counts * (double)POSITION_SUBCOUNT * (double)motors[motor].position_scale + 0.5);

@@ -70,6 +70,9 @@ struct motor {
 extern struct motor motors[MOTORS];
 extern volatile uint32_t motors_active;  /* V: bit n-1: Ixx00 of motor n */
 extern volatile uint32_t motors_enabled; /* C: bit n-1: motor n is not killed */
+/* Bit n-1: the servo task has something to do for a jog of motor n (motion/jog_servo.h). Changed with it held off, and
+ * by it. */
+extern volatile uint32_t jogs_busy;
 
 /* What positions of commands are ahead of those of the trajectory (motion:1.2/4). Servo task held off, or in it. */
 static inline int64_t motor_followed(uint32_t motor) { return motors[motor].origin_follows ? 0 : motors[motor].master; }

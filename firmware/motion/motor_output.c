@@ -5,7 +5,6 @@
 #include <stdbool.h>
 
 #include "firmware/hal/hal.h"
-#include "firmware/motion/commutation.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
 #include "firmware/variables/i_variables.h"
@@ -16,11 +15,12 @@ enum { COMMUTATED = 1, DESTINATION_IS_X = 2, WORD_MOST = 0x7FFFFF }; /* Ixx01 */
 static struct output {
   /* V */
   volatile uint32_t* word; /* 0: there is none */
-  bool commutated;
-  int32_t bias; /* output */
+  int32_t bias;            /* output */
   /* S */
   int32_t written;
 } outputs[MOTORS];
+
+uint32_t motor_output_commutated;
 
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
 
@@ -31,28 +31,25 @@ static volatile uint32_t* word_of(bool x, uint32_t address) {
 
 /* What the registers hold is not known: each is written once. */
 void motor_output_initialize(void) {
+  motor_output_commutated = 0;
   for (uint32_t motor = 0; motor < MOTORS; ++motor) outputs[motor] = (struct output){.written = INT32_MIN};
 }
 
 void motor_output_motor_changed(uint32_t motor) {
   struct output* o = &outputs[motor - 1u];
   const uint32_t mode = (uint32_t)variable(motor, IXX01_COMMUTATION_ENABLE);
-  const uint32_t state = hal_mask_servo();
+  const uint32_t bit = 1u << (motor - 1u), state = hal_mask_servo();
   o->word = word_of((mode & DESTINATION_IS_X) != 0u, (uint32_t)variable(motor, IXX02_OUTPUT_ADDRESS));
-  o->commutated = (mode & COMMUTATED) != 0u;
+  motor_output_commutated = (mode & COMMUTATED) != 0u ? motor_output_commutated | bit : motor_output_commutated & ~bit;
   o->bias = variable(motor, IXX29_OUTPUT_BIAS) * (1 << OUTPUT_FRACTION_BITS);
   hal_unmask(state);
 }
 
-void motor_output_servo(uint32_t motor) {
+void motor_output_write(uint32_t motor) {
   const struct motor* m = &motors[motor];
   struct output* o = &outputs[motor];
   FIXED_IN_REGISTER(m);
   FIXED_IN_REGISTER(o);
-  if (o->commutated) {
-    commutation_command(motor, m->output);
-    return;
-  }
   int32_t word = m->output + o->bias;
   if (word > WORD_MOST) word = WORD_MOST;
   if (word < -WORD_MOST) word = -WORD_MOST;

@@ -32,8 +32,8 @@ int64_t motor_target(uint32_t motor) {
   int64_t target = m->trajectory;
   if (m->path == PATH_SYSTEM)
     target = of_system(motor, &coordinate_systems[m->cs], &corner, &has_corner);
-  else if (m->path == PATH_OWN && jogs[motor].now.aim == AIM_TARGET)
-    target = jogs[motor].now.target;
+  else if (m->path == PATH_OWN && jog_now(&jogs[motor])->aim == AIM_TARGET)
+    target = jog_now(&jogs[motor])->target;
   hal_unmask(state);
   return has_corner ? math_nearest(corner) : target;
 }

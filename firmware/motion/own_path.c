@@ -120,53 +120,57 @@ void own_path_end_at(struct own_path* path, int64_t end) {
   path->end = end;
 }
 
-/* The piece under way once more, after `elapsed`. */
-static void repeat(struct own_path* path, int64_t* elapsed) {
+/* The piece under way once more. */
+static void repeat(struct own_path* path) {
   struct own_piece* piece = &path->pieces[path->repeated];
   const uint64_t carried = (uint64_t)path->carried + path->carry;
   path->carried = (uint32_t)carried;
   piece->cubic.start += piece->cubic.linear + (int64_t)(carried >> 32);
-  *elapsed -= piece->time;
+  path->elapsed -= piece->time;
   if (path->repeats != OWN_PATH_ENDLESS) path->repeats--;
 }
 
-/* False: there is none any more. */
-static __attribute__((noinline)) bool next_piece(struct own_path* path, int64_t* elapsed) {
-  while (path->executing != path->count) {
-    const int64_t time = path->pieces[path->executing].time;
-    if (*elapsed < time) return true;
-    if (path->repeats != 0u && path->executing == path->repeated) {
-      repeat(path, elapsed);
-    } else {
-      *elapsed -= time;
-      path->executing++;
-    }
-  }
-  return false;
-}
-
-static uint32_t fraction_of(const struct own_piece* piece, int64_t elapsed) {
+static inline uint32_t fraction_of(const struct own_piece* piece, int64_t elapsed) {
   const uint32_t part = (uint32_t)(piece->shift < 0 ? elapsed >> -piece->shift : elapsed << piece->shift);
   const uint64_t fraction = (uint64_t)part * piece->inverse >> 31;
   return fraction > UINT32_MAX ? UINT32_MAX : (uint32_t)fraction;
 }
 
-bool own_path_advance(struct own_path* path, int64_t increment, int64_t* position) {
-  int64_t elapsed = path->elapsed + increment;
-  const struct own_piece* piece = &path->pieces[path->executing];
-  if (path->executing == path->count || elapsed >= piece->time) {
-    if (!next_piece(path, &elapsed)) {
-      *position = path->end + path->shift;
-      return false;
-    }
-    piece = &path->pieces[path->executing];
-  }
-  path->elapsed = elapsed;
+static inline int64_t position_in(const struct own_path* path, const struct own_piece* piece, int64_t elapsed) {
   const uint32_t fraction = fraction_of(piece, elapsed);
   const struct cubic* cubic = &piece->cubic;
   const int64_t at =
       piece->shape == SHAPE_STRAIGHT ? cubic->start + fixed_part(cubic->linear, fraction) : cubic_at(cubic, fraction);
-  *position = at + path->shift;
+  return at + path->shift;
+}
+
+static __attribute__((noinline)) bool into_next(struct own_path* path, int64_t* position) {
+  while (path->executing != path->count) {
+    const struct own_piece* piece = &path->pieces[path->executing];
+    const int64_t time = piece->time;
+    if (path->elapsed < time) {
+      *position = position_in(path, piece, path->elapsed);
+      return true;
+    }
+    if (path->repeats != 0u && path->executing == path->repeated) {
+      repeat(path);
+    } else {
+      path->elapsed -= time;
+      path->executing++;
+    }
+  }
+  *position = path->end + path->shift;
+  return false;
+}
+
+/* The call is the last thing, so that what does not need it saves no registers. */
+bool own_path_advance(struct own_path* path, int32_t increment, int64_t* position) {
+  const struct own_piece* piece = &path->pieces[path->executing];
+  FIXED_IN_REGISTER(piece);
+  const int64_t elapsed = path->elapsed + increment;
+  path->elapsed = elapsed;
+  if (path->executing == path->count || elapsed >= piece->time) return into_next(path, position);
+  *position = position_in(path, piece, elapsed);
   return true;
 }
 

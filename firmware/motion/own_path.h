@@ -57,7 +57,7 @@ void own_path_stay_for_ever(struct own_path* path, double speed); /* nothing may
 void own_path_end_at(struct own_path* path, int64_t end);         /* the last piece ends there: less than a few units */
 
 /* S. On by trajectory time; where it is then, or has ended: false. */
-bool own_path_advance(struct own_path* path, int64_t increment, int64_t* position);
+bool own_path_advance(struct own_path* path, int32_t increment, int64_t* position);
 
 /* S held off: where it will be `ahead` from now. Numbers are made of what is copied later. */
 struct own_path_place {

@@ -8,13 +8,17 @@ struct path paths[COORDINATE_SYSTEMS];
 
 int64_t path_time(double milliseconds) { return math_to_integer(math_scale(milliseconds, PATH_TIME_BITS)); }
 
+void path_set_time(struct path_move* m, int64_t time) {
+  m->time = time;
+  slice_pause();
+  m->by_time = fixed_divide_by((uint64_t)time);
+}
+
 void path_set_times(struct path_move* m, double time, double acceleration, double s_curve) {
-  m->time = path_time(time);
+  path_set_time(m, path_time(time));
   slice_pause();
   m->acceleration = m->change = path_time(acceleration);
   m->s_curve = path_time(s_curve);
-  slice_pause();
-  m->by_time = fixed_divide_by((uint64_t)m->time);
 }
 
 /* S-curves keep their share of a change that is shorter than it should be. */
@@ -127,20 +131,32 @@ void path_at_end(uint32_t count, struct path_point* point) {
   for (uint32_t i = 0; i < count; i++) point->parts[i] = PATH_WHOLE;
 }
 
-static void move_by(struct path_move* m, uint32_t axis, double shift) {
+/* False: it ends where it did. */
+static bool move_by(struct path_move* m, uint32_t axis, double shift) {
+  const bool ends = ((m->absolute >> axis) & 1u) != 0, turns = axis >= AXIS_X && axis <= AXIS_Z;
   m->start[axis] += shift;
-  m->end[axis] += shift;
-  if (axis >= AXIS_X && axis <= AXIS_Z) m->circle.centre[axis - AXIS_X] += shift;
+  if (turns) m->circle.centre[axis - AXIS_X] += shift;
   slice_pause();
+  if (!ends) {
+    m->end[axis] += shift;
+    return true;
+  }
+  m->delta[axis] -= shift;
+  if (turns) m->circle.along[axis - AXIS_X] -= shift;
+  return false;
 }
 
-void path_begin_at(struct path* p, double position[AXIS_COUNT]) {
+uint32_t path_begin_at(struct path* p, double position[AXIS_COUNT]) {
+  uint32_t changed = 0;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     const double shift = position[axis] - path_of(p, 0)->start[axis];
-    for (uint32_t i = 0; shift != 0.0 && i < p->count; i++) move_by(path_of(p, i), axis, shift);
+    uint32_t i = 0;
+    while (shift != 0.0 && i < p->count && move_by(path_of(p, i), axis, shift)) i++;
+    if (shift != 0.0 && i < p->count) changed |= 1u << i;
     position[axis] = path_of(p, p->count - 1u)->end[axis];
     slice_pause();
   }
+  return changed;
 }
 
 int64_t path_pop(struct path* p) {

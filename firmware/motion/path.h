@@ -35,7 +35,9 @@ struct path_move {
   struct fixed_divisor by_time;
   double start[AXIS_COUNT], delta[AXIS_COUNT], end[AXIS_COUNT];
   struct circle circle;
-  uint32_t number; /* as coordinate_system.planned counts */
+  uint32_t absolute; /* axes that it takes to its end, wherever it begins */
+  double feed;       /* by which it goes; 0: in its time */
+  uint32_t number;   /* as coordinate_system.planned counts */
   struct path_line line;
 };
 
@@ -67,6 +69,7 @@ struct path_point {
 };
 
 int64_t path_time(double milliseconds);
+void path_set_time(struct path_move* m, int64_t time);
 void path_set_times(struct path_move* m, double time, double acceleration, double s_curve);
 /* A move that joins is blended no earlier than `now`: what is before that has been used already. */
 void path_blend(struct path* p, uint32_t ahead, int64_t now);
@@ -77,7 +80,9 @@ void path_at(struct path* p, struct path_reach reach, int64_t time, struct path_
 void path_axes_at(struct path* p, const struct path_point* point, double position[AXIS_COUNT]); /* user units */
 void path_at_end(uint32_t count, struct path_point* point);                                     /* of so many moves */
 int64_t path_pop(struct path* p); /* the first one is over; what to take off times */
-/* Its moves begin at `position`, and go the ways that they were to go: it becomes the end of the last. */
-void path_begin_at(struct path* p, double position[AXIS_COUNT]);
+/* Its moves begin at `position`, which becomes the end of the last. An axis goes the ways that it was to go, up to the
+ * first move that takes it to its end all the same: an arc as it is, and evenly what that leaves. Which moves do, a bit
+ * each. */
+uint32_t path_begin_at(struct path* p, double position[AXIS_COUNT]);
 
 #endif

@@ -95,10 +95,4 @@ int64_t piece_end(const struct piece* piece, const struct cubic* cubic) {
   return cubic_at(cubic, (uint32_t)piece->to << 28);
 }
 
-int64_t cubic_at(const struct cubic* cubic, uint32_t fraction) {
-  const int64_t square = cubic->square + fixed_part(cubic->cube, fraction);
-  const int64_t linear = cubic->linear + fixed_part(square, fraction);
-  return cubic->start + fixed_part(linear, fraction);
-}
-
 int64_t cubic_end(const struct cubic* cubic) { return cubic->start + cubic->linear + cubic->square + cubic->cube; }

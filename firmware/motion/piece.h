@@ -73,7 +73,12 @@ bool piece_ring_advance(struct piece_ring* ring, int64_t increment);
 
 int64_t piece_end(const struct piece* piece, const struct cubic* cubic); /* where it ends */
 
-int64_t cubic_at(const struct cubic* cubic, uint32_t fraction);
+static inline int64_t cubic_at(const struct cubic* cubic, uint32_t fraction) {
+  const int64_t square = cubic->square + fixed_part(cubic->cube, fraction);
+  const int64_t linear = cubic->linear + fixed_part(square, fraction);
+  return cubic->start + fixed_part(linear, fraction);
+}
+
 int64_t cubic_end(const struct cubic* cubic);
 
 #endif

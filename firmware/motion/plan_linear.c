@@ -8,18 +8,22 @@
 #include "firmware/motion/system_motors.h"
 #include "firmware/variables/i_variables.h"
 
-bool plan_feed_time(uint32_t cs, const double delta[AXIS_COUNT], uint32_t moving, double fastest, double* time) {
+double plan_feed(uint32_t cs, double fastest) {
+  double feed = cs_real(cs, ISX89_FEEDRATE);
+  const double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT);
+  if (limit > 0.0 && feed > limit) feed = limit;
+  return fastest > 0.0 && feed > fastest ? fastest : feed;
+}
+
+bool plan_feed_time(uint32_t cs, const double delta[AXIS_COUNT], uint32_t moving, double feed, double* time) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  double unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT), feed = cs_real(cs, ISX89_FEEDRATE);
-  double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT), alternate = 0.0;
+  double unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT), alternate = 0.0;
   double square = 0.0, other = 0.0, single = 0.0;
   uint32_t axes = 0;
   if (i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME)) != 0) alternate = cs_real(cs, ISX86_ALTERNATE_FEEDRATE);
   const bool follows = !(alternate > 0.0); /* what is no feedrate axis */
   *time = 0.0;
   if (moving == 0) return true;
-  if (limit > 0.0 && feed > limit) feed = limit;
-  if (fastest > 0.0 && feed > fastest) feed = fastest;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     if (((moving >> axis) & 1u) == 0) continue;
     slice_pause();
@@ -127,7 +131,7 @@ bool plan_linear(uint32_t cs) {
   const uint32_t moving = plan_targets(cs, m, target);
   if (s->time_mode)
     time = cs_real(cs, ISX89_FEEDRATE);
-  else if (!plan_feed_time(cs, m->delta, moving, 0.0, &time))
+  else if (!plan_feed_time(cs, m->delta, moving, plan_feed(cs, 0.0), &time))
     return false;
   const struct limits limits = motor_limits(cs, target);
   set_times(cs, m, time, &limits);

@@ -65,17 +65,18 @@ static uint32_t arc_ways(const struct coordinate_system* s, const struct path_mo
   return moving;
 }
 
+static double feed_of(uint32_t cs, const struct path_move* m) {
+  const double centripetal = m->is_arc ? cs_real(cs, ISX78_CENTRIPETAL_LIMIT) : 0.0;
+  if (!(centripetal > 0.0)) return plan_feed(cs, 0.0);
+  return plan_feed(cs, math_square_root(centripetal * circle_least_radius(&m->circle)));
+}
+
 static bool feed_time(uint32_t cs, const struct path_move* m, uint32_t moving, double* time) {
-  const struct coordinate_system* s = &coordinate_systems[cs];
-  const double centripetal = cs_real(cs, ISX78_CENTRIPETAL_LIMIT);
-  double way[AXIS_COUNT], fastest = 0.0;
+  double way[AXIS_COUNT];
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) way[axis] = m->delta[axis];
-  if (m->is_arc) {
-    moving = arc_ways(s, m, moving, way);
-    if (centripetal > 0.0) fastest = math_square_root(centripetal * circle_least_radius(&m->circle));
-  }
+  if (m->is_arc) moving = arc_ways(&coordinate_systems[cs], m, moving, way);
   slice_pause();
-  return plan_feed_time(cs, way, moving, fastest, time);
+  return plan_feed_time(cs, way, moving, m->feed, time);
 }
 
 static void set_times(uint32_t cs, struct path_move* m, double time) {
@@ -129,6 +130,8 @@ enum run_time_error plan_path(uint32_t cs) {
   const enum circle_kind kind = s->mode == MODE_LINEAR ? CIRCLE_STRAIGHT : find_circle(cs, m);
   if (kind == CIRCLE_IMPOSSIBLE) return RUN_TIME_RADIUS;
   m->is_arc = kind == CIRCLE_ARC;
+  m->absolute = s->pending_axes & s->pending_absolute;
+  m->feed = s->time_mode ? 0.0 : feed_of(cs, m);
   if (s->time_mode)
     time = cs_real(cs, ISX89_FEEDRATE);
   else if (!feed_time(cs, m, moving, &time))
@@ -140,6 +143,24 @@ enum run_time_error plan_path(uint32_t cs) {
   return RUN_TIME_NONE;
 }
 
+static void set_time_anew(uint32_t cs, struct path_move* m) {
+  const int64_t least = m->acceleration > 0 ? m->acceleration : path_time(LEAST_MS);
+  uint32_t moving = 0;
+  double time;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
+    if (m->delta[axis] != 0.0) moving |= 1u << axis;
+  slice_pause();
+  if (!(m->feed > 0.0) || !feed_time(cs, m, moving, &time)) return;
+  const int64_t wanted = path_time(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS);
+  path_set_time(m, wanted > least ? wanted : least);
+}
+
+void plan_path_begin_at(uint32_t cs, double position[AXIS_COUNT]) {
+  uint32_t changed = path_begin_at(&paths[cs], position);
+  for (uint32_t i = 0; changed != 0; i++, changed >>= 1)
+    if ((changed & 1u) != 0) set_time_anew(cs, path_of(&paths[cs], i));
+}
+
 void plan_path_delay(uint32_t cs, double milliseconds) {
   struct path_move* m = &planning;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
@@ -147,6 +168,8 @@ void plan_path_delay(uint32_t cs, double milliseconds) {
     m->end[axis] = coordinate_systems[cs].position[axis];
   }
   m->is_arc = m->sharp = false;
+  m->absolute = 0;
+  m->feed = 0.0;
   m->dwells = true;
   set_times(cs, m, milliseconds);
   slice_pause();

@@ -78,6 +78,7 @@ void position_loop_initialize(void) {
 /* Where a source stands now is no movement. */
 static void put(struct loop* l, const struct loop* next) {
   if (l->one_source) l->velocity_reading = l->position_reading;
+  l->integral = clamp(l->integral, next->integral_most);
   if (next->position_source != l->position_source) l->position_reading = *next->position_source;
   if (next->velocity_source != l->velocity_source) l->velocity_reading = *next->velocity_source;
   if (l->left > next->extension) l->left = next->extension;
@@ -130,7 +131,8 @@ void position_loop_restart(uint32_t motor) {
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */
 
-static bool is_small(int64_t value) { return value == (int32_t)value; }
+/* As nearly every number is. */
+static inline bool is_small(int64_t value) { return __builtin_expect(value == (int32_t)value, 1); }
 
 static int32_t saturated(int64_t value) {
   if (value > INT32_MAX) return INT32_MAX;
@@ -142,15 +144,17 @@ static void measure(struct motor* m, struct loop* l) {
   const uint32_t position = *l->position_source;
   const int64_t moved = (int64_t)hal_signed(position - l->position_reading) * m->position_scale;
   l->position_reading = position;
-  if (l->forgets != 0u)
-    l->forgets--;
-  else
-    m->actual += moved;
   int64_t speed = moved;
   if (!l->one_source) {
     const uint32_t velocity = *l->velocity_source;
     speed = (int64_t)hal_signed(velocity - l->velocity_reading) * m->velocity_scale;
     l->velocity_reading = velocity;
+  }
+  if (__builtin_expect(l->forgets != 0u, 0)) {
+    l->forgets--;
+    speed = 0;
+  } else {
+    m->actual += moved;
   }
   m->velocity = is_small(speed) ? (int32_t)speed : saturated(speed);
 }
@@ -158,7 +162,7 @@ static void measure(struct motor* m, struct loop* l) {
 /* FINER. */
 static void integrate(struct loop* l, int64_t error, int64_t rest) {
   const int64_t integrand = clamp(l->integrates_velocity ? rest + error : error, l->integrand_most);
-  l->integral += l->integral_gain * integrand >> FINER;
+  l->integral = clamp(l->integral + (l->integral_gain * integrand >> FINER), l->integral_most);
 }
 
 static bool integrates(const struct loop* l, bool moves) {
@@ -166,17 +170,16 @@ static bool integrates(const struct loop* l, bool moves) {
 }
 
 /* 2^-7 position units times Ixx30; output, wider than any limit, with NOTCH_FINER more bits. */
-static int64_t with_gain(const struct loop* l, int64_t sum) {
-  const int32_t whole = (int32_t)(sum >> FINER);
+static inline int64_t with_gain(const struct loop* l, int64_t sum) {
+  if (is_small(sum)) return (int64_t)(int32_t)sum * l->proportional >> (FINER + GAIN_BITS - NOTCH_FINER);
   const int32_t finer = ((int32_t)sum & ((1 << FINER) - 1)) * l->proportional >> FINER;
-  if (whole == sum >> FINER) return ((int64_t)whole * l->proportional + finer) >> (GAIN_BITS - NOTCH_FINER);
   return ((clamp(sum, SUM_MOST) >> FINER) * l->proportional + finer) >> (GAIN_BITS - NOTCH_FINER);
 }
 
 /* What a clip leaves of an output, and whether it had to. */
 static void put_out(struct motor* m, struct loop* l, int64_t output) {
-  const int32_t most = l->output_most;
-  const int32_t clipped = output > most ? most : output < -most ? -most : (int32_t)output;
+  const int32_t most = l->output_most, whole = is_small(output) ? (int32_t)output : saturated(output);
+  const int32_t clipped = whole > most ? most : whole < -most ? -most : whole;
   m->output = clipped;
   l->saturated = clipped == most || clipped == -most;
 }
@@ -188,7 +191,6 @@ static int64_t pid(const struct motor* m, struct loop* l, int64_t step) {
   if (l->deadband_gain != 0) error += l->deadband_gain * clamp(limited, l->deadband) * (1 << (FINER - DEADBAND_BITS));
   const int64_t rest = l->velocity_forward * step - (int64_t)l->derivative * m->velocity;
   if (integrates(l, step != 0)) integrate(l, error, rest);
-  l->integral = clamp(l->integral, l->integral_most);
   int64_t sum = error + rest + (l->integral >> (INTEGRAL_BITS - FINER));
   if (l->acceleration_forward != 0) sum += l->acceleration_forward * clamp(step - l->step, STEP_MOST);
   return with_gain(l, sum);
@@ -205,43 +207,54 @@ static void close_loop(uint32_t motor, struct motor* m, struct loop* l) {
   l->step = step;
 }
 
-/* The same in half the time, for numbers of 32 bits and what most motors use. False: nothing has been done. */
+static hal_place words_of(uint32_t motor) { return hal_place_of(MEMORY_MOTOR_WORDS * (motor + 1u)); }
+
+static inline void publish_position(hal_place words, uint32_t which, int64_t position) {
+  *hal_x_of(words, which) = (uint32_t)(position >> 24) & HAL_WORD_MASK;
+  *hal_y_of(words, which) = (uint32_t)position & HAL_WORD_MASK;
+}
+
+static inline void publish_numbers(hal_place words, int32_t velocity, int32_t output) {
+  *hal_x_of(words, MEMORY_MOTOR_VELOCITY) = (uint32_t)velocity & HAL_WORD_MASK;
+  *hal_x_of(words, MEMORY_MOTOR_FILTER_OUTPUT) = (uint32_t)output & HAL_WORD_MASK;
+}
+
+static void publish(uint32_t motor, const struct motor* m) {
+  const hal_place words = words_of(motor);
+  publish_position(words, MEMORY_MOTOR_COMMANDED, m->commanded);
+  publish_position(words, MEMORY_MOTOR_ACTUAL, m->actual);
+  publish_numbers(words, m->velocity, m->output);
+}
+
+/* The same in half the time, for numbers of 32 bits and what most motors use. What is done with is put away early: so
+ * it needs no more registers than a function may spoil. False: nothing has been done. */
 static inline bool close_simple_loop(uint32_t motor, struct motor* m, struct loop* l) {
-  const int64_t difference = m->commanded - m->actual, long_step = m->commanded - m->closed_at;
-  const int64_t change = long_step - l->step;
+  const int64_t commanded = m->commanded, actual = m->actual;
+  const int64_t difference = commanded - actual, long_step = commanded - m->closed_at, change = long_step - l->step;
   if (!l->simple || !is_small(difference) || !is_small(long_step) || !is_small(change) ||
       (compensation_of_torque >> motor & 1u) != 0u)
     return false;
+  const hal_place words = words_of(motor);
+  publish_position(words, MEMORY_MOTOR_COMMANDED, commanded);
+  publish_position(words, MEMORY_MOTOR_ACTUAL, actual);
+  m->closed_at = commanded;
+  l->step = long_step;
   const int32_t step = (int32_t)long_step, most = l->small_error_most;
   int32_t error = (int32_t)difference;
   if (error > most) error = most;
   if (error < -most) error = -most;
-  if (integrates(l, step != 0)) l->integral += (int64_t)l->integral_gain * error;
   int64_t sum = (int64_t)error * (1 << FINER) - (int64_t)l->derivative * m->velocity;
-  if (l->integral != 0) {
-    l->integral = clamp(l->integral, l->integral_most);
-    sum += l->integral >> (INTEGRAL_BITS - FINER);
-  }
   if (step != 0) sum += (int64_t)l->velocity_forward * step;
-  if (change != 0) sum += (int64_t)l->acceleration_forward * (int32_t)change;
+  if ((int32_t)change != 0) sum += (int64_t)l->acceleration_forward * (int32_t)change;
+  if (integrates(l, step != 0)) l->integral = clamp(l->integral + (int64_t)l->integral_gain * error, l->integral_most);
+  sum += l->integral >> (INTEGRAL_BITS - FINER);
   const int64_t finer = with_gain(l, sum);
+  l->filtered = finer;
   int64_t output = finer >> NOTCH_FINER;
   if (step != 0) output += step > 0 ? l->friction : -l->friction;
   put_out(m, l, output);
-  l->filtered = finer;
-  m->closed_at = m->commanded;
-  l->step = step;
+  publish_numbers(words, m->velocity, m->output);
   return true;
-}
-
-static inline void publish(uint32_t motor, const struct motor* m) {
-  const uint32_t words = MEMORY_MOTOR_WORDS * (motor + 1u);
-  *hal_x(words + MEMORY_MOTOR_COMMANDED) = (uint32_t)(m->commanded >> 24) & HAL_WORD_MASK;
-  *hal_y(words + MEMORY_MOTOR_COMMANDED) = (uint32_t)m->commanded & HAL_WORD_MASK;
-  *hal_x(words + MEMORY_MOTOR_ACTUAL) = (uint32_t)(m->actual >> 24) & HAL_WORD_MASK;
-  *hal_y(words + MEMORY_MOTOR_ACTUAL) = (uint32_t)m->actual & HAL_WORD_MASK;
-  *hal_x(words + MEMORY_MOTOR_VELOCITY) = (uint32_t)m->velocity & HAL_WORD_MASK;
-  *hal_x(words + MEMORY_MOTOR_FILTER_OUTPUT) = (uint32_t)m->output & HAL_WORD_MASK;
 }
 
 void position_loop_show(uint32_t motor) {
@@ -253,12 +266,11 @@ static __attribute__((noinline)) void run_killed(uint32_t motor, struct motor* m
   desired_position_take_actual(motor);
   m->output = 0;
   l->integral = l->step = l->filtered = 0; /* shown so while it is open */
-  const uint32_t words = MEMORY_MOTOR_WORDS * (motor + 1u);
-  const uint32_t low = (uint32_t)m->actual & HAL_WORD_MASK, high = (uint32_t)(m->actual >> 24) & HAL_WORD_MASK;
-  *hal_x(words + MEMORY_MOTOR_COMMANDED) = *hal_x(words + MEMORY_MOTOR_ACTUAL) = high;
-  *hal_y(words + MEMORY_MOTOR_COMMANDED) = *hal_y(words + MEMORY_MOTOR_ACTUAL) = low;
-  *hal_x(words + MEMORY_MOTOR_VELOCITY) = (uint32_t)m->velocity & HAL_WORD_MASK;
-  *hal_x(words + MEMORY_MOTOR_FILTER_OUTPUT) = 0;
+  const hal_place words = words_of(motor);
+  const int64_t actual = m->actual;
+  publish_position(words, MEMORY_MOTOR_COMMANDED, actual);
+  publish_position(words, MEMORY_MOTOR_ACTUAL, actual);
+  publish_numbers(words, m->velocity, 0);
 }
 
 static __attribute__((noinline)) void run_other(uint32_t motor, struct motor* m, struct loop* l) {
@@ -284,9 +296,8 @@ void position_loop_servo(uint32_t motor) {
   }
   l->left = l->extension;
   measure(m, l);
-  if (m->loop == LOOP_CLOSED && close_simple_loop(motor, m, l))
-    publish(motor, m);
-  else if (m->loop == LOOP_KILLED)
+  if (m->loop == LOOP_CLOSED && close_simple_loop(motor, m, l)) return;
+  if (m->loop == LOOP_KILLED)
     run_killed(motor, m, l);
   else
     run_other(motor, m, l);

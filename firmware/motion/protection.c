@@ -331,7 +331,7 @@ void protection_pass(void) {
   if (stands) return;
   asked = false;
   foreground = i_variable_foreground_in_position();
-  protection_always_watched = foreground ? UINT32_MAX : overload_watched;
+  protection_always_watched = foreground ? UINT32_MAX : 0u;
   uint32_t left = motors_active;
   for (uint32_t motor = 0; left != 0u; ++motor, left >>= 1)
     if ((left & 1u) != 0u) check(motor);
@@ -342,26 +342,25 @@ bool protection_is_asked_for(void) { return asked; }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */
 
-/* What the pass would act upon. A motor that stands in a limit is none of it. */
+/* What the pass would act upon. A motor that stands in a limit is none of it. First what needs no call. */
 static bool is_urgent(uint32_t motor) {
   const struct view view = look_now(motor);
-  const bool closed = view.loop == LOOP_CLOSED, up = goes(&view, 1);
-  if (motor_flags_fault(motor) || ((overload_watched >> motor & 1u) != 0u && overload_is_too_much(motor))) return true;
-  if (closed && (error_of(&view) > guards[motor].fatal_error || integral_trips(motor))) return true;
-  if (!up && !goes(&view, -1)) return false;
-  return is_at_input(motor, up) || is_at_software_limit(motor, &view, up) ||
-         (closed && is_beyond_desired(motor, &view, up));
+  const bool closed = view.loop == LOOP_CLOSED, up = goes(&view, 1), moves = up || goes(&view, -1);
+  if (closed && error_of(&view) > guards[motor].fatal_error) return true;
+  if (moves && (is_at_software_limit(motor, &view, up) || (closed && is_beyond_desired(motor, &view, up)))) return true;
+  if (motor_flags_fault(motor) || (moves && is_at_input(motor, up))) return true;
+  return ((overload_watched >> motor & 1u) != 0u && overload_is_too_much_now(motor)) ||
+         (closed && integral_trips(motor));
 }
 
 void protection_take_turn(void) {
   urgent_watched = stands ? 0u : motors_enabled & (uint32_t)FIRST_TURN << turn;
   turn = (turn + 1u) % PROTECTION_TURNS;
-  protection_watched = foreground ? UINT32_MAX : overload_watched | urgent_watched;
+  protection_watched = foreground ? UINT32_MAX : urgent_watched;
 }
 
 void protection_look(uint32_t motor) {
-  if ((overload_watched >> motor & 1u) != 0u) overload_servo(motor);
-  if (protection_takes_turns() && (urgent_watched >> motor & 1u) != 0u && is_urgent(motor)) {
+  if ((urgent_watched >> motor & 1u) != 0u && protection_takes_turns() && is_urgent(motor)) {
     asked = true;
     hal_request_real_time();
   }

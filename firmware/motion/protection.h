@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/motion/overload.h"
 #include "firmware/variables/i_variables.h"
 
 /* What a trip needs of higher layers; image/tables.c fills it in. */
@@ -38,6 +39,7 @@ static inline void protection_begin_servo(void) { /* once an interrupt, before p
 }
 static inline void protection_servo(
     uint32_t motor) { /* 0..31: overload, in position of the foreground, urgent things */
+  if ((overload_watched >> motor & 1u) != 0u) overload_servo(motor);
   if ((protection_watched >> motor & 1u) != 0u) protection_look(motor);
 }
 

@@ -4,6 +4,7 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/lookahead_plan.h"
 #include "firmware/motion/path.h"
+#include "firmware/motion/plan_path.h"
 #include "firmware/motion/segment_points.h"
 #include "firmware/motion/segment_ring.h"
 #include "firmware/motion/segment_sequence.h"
@@ -47,7 +48,12 @@ void segment_stop(uint32_t cs) {
   if (segment_is_busy(cs)) sequences[cs].stops = true;
 }
 
-void segment_go_on(uint32_t cs) { sequences[cs].stops = false; }
+bool segment_is_left(uint32_t cs) { return paths[cs].count != 0; }
+
+void segment_go_on(uint32_t cs, bool one_move) {
+  sequences[cs].stops = false;
+  sequences[cs].one_move = one_move;
+}
 
 /* Isx21 */
 static void show(uint32_t cs, uint32_t state) {
@@ -67,7 +73,7 @@ void segment_start_of(uint32_t cs, double position[AXIS_COUNT]) {
 }
 
 void segment_begin_at(uint32_t cs, double position[AXIS_COUNT]) {
-  if (paths[cs].count != 0) path_begin_at(&paths[cs], position);
+  if (paths[cs].count != 0) plan_path_begin_at(cs, position);
 }
 
 static bool work_at_once(uint32_t cs, bool alone) {
@@ -106,7 +112,7 @@ static bool go_ahead(uint32_t cs, bool alone) {
   if (q->order != LOOKAHEAD_NONE) obey(cs);
   if (q->made && lookahead_is_over(cs)) {
     segment_ring_hand_over(cs);
-    q->runs = q->order != LOOKAHEAD_NONE; /* the same */
+    q->runs = false;
     return true;
   }
   const uint32_t ahead = segment_ring_ahead(cs);

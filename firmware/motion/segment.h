@@ -17,8 +17,9 @@ bool segment_is_busy(uint32_t cs); /* moves wait, or a sequence has not been mad
 bool segment_is_under_way(uint32_t cs);
 /* A move of another kind may be calculated. False: the sequence comes to its end for it, and needs its place still. */
 bool segment_gives_way(uint32_t cs);
-void segment_stop(uint32_t cs);  /* the sequence ends with the move that is under way; later ones wait for R */
-void segment_go_on(uint32_t cs); /* R: those that wait may begin */
+void segment_stop(uint32_t cs); /* the sequence ends with the move that is under way; later ones wait for R, S */
+bool segment_is_left(uint32_t cs);
+void segment_go_on(uint32_t cs, bool one_move); /* R: those that wait may begin; S: the first of them */
 /* Background: of a sequence that is looked ahead. */
 bool segment_looks(uint32_t cs);
 void segment_order(uint32_t cs, enum lookahead_order order);

@@ -30,6 +30,7 @@ struct sequence {
   volatile enum lookahead_order order; /* B; R takes it */
   bool closed;                         /* no further move joins: one of another kind waits for its place */
   bool stops;                          /* segment_stop: at the end of the move that is under way. B sets */
+  bool one_move;                       /* so does the next one, with its first move. B sets */
   uint32_t joined;
   uint32_t points;      /* that are still to be made behind its end */
   uint32_t unhanded;    /* pieces behind those that the servo task has */

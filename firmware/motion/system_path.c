@@ -21,26 +21,27 @@ static void slew_time_base(struct coordinate_system* s) {
   if (s->increment == target && !s->held) s->increment_slew = s->increment_usual; /* a hold's end went at another */
 }
 
-static void go_to(uint32_t motor, int64_t position) {
-  struct motor* m = &motors[motor];
-  if (m->path != PATH_SYSTEM) return;
-  m->trajectory = m->of_system = position;
-}
+static void go_to(struct motor* m, int64_t position) { m->trajectory = m->of_system = position; }
 
-/* Motors that are not in the next piece stand where this one ends. One that was cut short has all its motors there. */
+/* Motors that are not in the piece under way stand where the one before it ends. One that was cut short has all its
+ * motors there. */
 static void end_pieces(struct coordinate_system* s, uint32_t first) {
+  const uint32_t follows = s->active ? piece_ring_at(&s->ring, s->ring.executing)->motors : 0u;
   for (uint32_t number = first; number != s->ring.executing; number++) {
     const struct piece* piece = piece_ring_at(&s->ring, number);
     if (piece->end != piece->time) continue;
-    for (uint32_t motor = 0, left = piece->motors; left != 0; motor++, left >>= 1)
-      if ((left & 1u) != 0) go_to(motor, piece_end(piece, piece_ring_cubic(&s->ring, number, motor)));
+    for (uint32_t motor = 0, left = piece->motors & ~follows; left != 0; motor++, left >>= 1)
+      if ((left & 1u) != 0 && motors[motor].path == PATH_SYSTEM)
+        go_to(&motors[motor], piece_end(piece, piece_ring_cubic(&s->ring, number, motor)));
   }
 }
 
 static void follow(struct coordinate_system* s) {
-  const uint32_t number = s->ring.executing;
-  for (uint32_t motor = 0, left = piece_ring_at(&s->ring, number)->motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0) go_to(motor, cubic_at(piece_ring_cubic(&s->ring, number, motor), s->ring.fraction));
+  const uint32_t number = s->ring.executing, fraction = s->ring.fraction;
+  const struct cubic* cubic = piece_ring_cubic(&s->ring, number, 0);
+  struct motor* m = motors;
+  for (uint32_t left = piece_ring_at(&s->ring, number)->motors; left != 0; left >>= 1, m++, cubic++)
+    if ((left & 1u) != 0 && m->path == PATH_SYSTEM) go_to(m, cubic_at(cubic, fraction));
 }
 
 /* From rest a move begins with the interrupt: what the one before has left of it is lost. */

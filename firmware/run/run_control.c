@@ -126,6 +126,12 @@ static void forget_match(uint32_t cs) {
   hal_unmask(state);
 }
 
+/* Calculated moves that a stop has left out; those that are being dropped are none. */
+static bool moves_wait(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  return !s->settling && (s->next_valid || segment_is_left(cs));
+}
+
 error_t run_start(uint32_t cs, bool single_step) {
   struct coordinate_system* s = &coordinate_systems[cs];
   error_t error = check_return(cs);
@@ -136,8 +142,8 @@ error_t run_start(uint32_t cs, bool single_step) {
   if (s->running) segment_order(cs, LOOKAHEAD_FORWARD);
   s->must_return = false;
   release_hold(cs);
-  if (s->running && single_step) { /* a step request ends continuous running behind the calculated moves */
-    if (s->continuous) s->quit = s->must_return = true; /* while a step waits for its move, one more changes nothing */
+  if (s->running && single_step) { /* Q, but where the end has been calculated: then all of that is made */
+    if (s->continuous && !s->ended) run_quit(cs); /* while a step waits for its move, one more changes nothing */
     s->continuous = false;
     return ERR_NONE;
   }
@@ -146,17 +152,19 @@ error_t run_start(uint32_t cs, bool single_step) {
     system_motors_resolve(cs);
   }
   uint32_t state = hal_mask_servo();
+  const bool waits = !s->running && moves_wait(cs);
   if (!s->running) {
     s->matching = s->starting = s->motors != 0;
     s->waited = true;
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
     s->first = true;
-    s->ended = s->slots_short = false;
+    s->slots_short = false;
+    s->ended = s->ended && waits;
     if (!s->next_valid) s->may_join = false;
   }
   s->end_block = false;
-  s->quit = s->ended; /* it stands at its top again, for another start */
-  segment_go_on(cs);
+  s->quit = s->ended || (single_step && waits); /* it stands at its top again, for another start; one of those alone */
+  segment_go_on(cs, single_step && waits);
   s->stepping = single_step;
   s->continuous = !single_step;
   s->error = RUN_TIME_NONE;

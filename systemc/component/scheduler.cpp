@@ -19,16 +19,21 @@ constexpr unsigned kAsked = 16;            // delta cycles in which an instant i
 [[noreturn]] void out_of_time() {
   raise_error("/brick/time", "beyond the end of the kernel's time, or before the epoch");
 }
+
+// Of the kernel, checked before anything is counted in it: its last instant would be beyond the last tick.
+TimeFs resolution() {
+  const TimeFs unit = std::llround(sc_core::sc_get_time_resolution().to_seconds() * 1e15);
+  if (unit > kFsPerNs)
+    raise_error("/brick/resolution", "the kernel's time resolution is coarser than 1 ns: edges would fall together");
+  return unit;
+}
 }  // namespace
 
 Scheduler::Scheduler(const TimeOptions& options)
     : epoch_(options.epoch.value()),
       grid_(std::max<Units>(options.grid.value(), 1)),
-      unit_(std::llround(sc_core::sc_get_time_resolution().to_seconds() * 1e15)),
-      last_tick_(fs_to_tick((kLastTime - epoch_) * unit_) - 1) {
-  if (unit_ > kFsPerNs)
-    raise_error("/brick/resolution", "the kernel's time resolution is coarser than 1 ns: edges would fall together");
-}
+      unit_(resolution()),
+      last_tick_(fs_to_tick((kLastTime - epoch_) * unit_) - 1) {}
 
 sc_time Scheduler::time_of(Tick edge) const {
   if (edge < 0 || edge > last_tick_) out_of_time();

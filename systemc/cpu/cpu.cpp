@@ -1,6 +1,7 @@
 // The CPU's public face: mapping, state and interrupt pins. Execution is in execute.cpp.
 #include "systemc/cpu/cpu.h"
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 
@@ -90,6 +91,18 @@ Cycle Cpu::slept() const { return s_->slept; }
 std::uint64_t Cpu::instructions() const { return s_->retired; }
 bool Cpu::asleep() const { return s_->sleeping; }
 bool Cpu::access_waits() const { return s_->access_waits; }
+
+// An instruction takes a cycle or more, so each run to the next cycle executes one.
+Cpu::Stop Cpu::run(Cycle limit) {
+  if (!on_instruction) return execute(limit);
+  for (;;) {
+    const std::uint32_t at = pc();
+    const Cycle begin = cycle();
+    const Stop stop = execute(std::min(limit, begin + 1));
+    if (cycle() != begin) on_instruction(at, cycle() - begin);
+    if (stop != Stop::kLimit || cycle() >= limit) return stop;
+  }
+}
 
 void Cpu::set_interrupt(CpuInterrupt line, bool pending) {
   State& s = *s_;

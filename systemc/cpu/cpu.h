@@ -92,11 +92,14 @@ class Cpu {
   std::function<void(std::uint32_t pc, Cycle)> on_flow;                       // calls and returns (jal/jalr with ra)
   std::function<void(std::uint32_t cause, std::uint32_t pc, Cycle)> on_trap;  // trap taken, pc interrupted
   std::function<void(std::uint32_t pc, Cycle)> on_mret;
+  // After each instruction and each entry of a trap, which is told behind on_trap: where it stood, what it took.
+  std::function<void(std::uint32_t pc, Cycle cycles)> on_instruction;
   std::function<bool(std::uint32_t address, std::uint32_t value)> on_store_watch;  // see watch_store
   void watch_store(std::uint32_t address);  // a store to this word calls on_store_watch; true stops with kHalt
 
  private:
   struct State;
+  Stop execute(Cycle limit);  // run() without on_instruction
   std::unique_ptr<State> s_;
 };
 

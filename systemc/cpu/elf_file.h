@@ -30,7 +30,8 @@ class ElfFile {
   std::uint32_t entry() const { return entry_; }
   std::optional<std::uint32_t> symbol(const std::string& name) const;
   const std::string& symbol_at(std::uint32_t address) const;  // name of the function that holds the address, "" if none
-  void load(Cpu& cpu) const;                                  // every segment must lie in mapped memory
+  bool begins_function(std::uint32_t address) const { return functions_.count(address) != 0; }
+  void load(Cpu& cpu) const;  // every segment must lie in mapped memory
  private:
   std::string path_;
   std::vector<Segment> segments_;

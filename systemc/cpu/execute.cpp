@@ -144,7 +144,7 @@ std::uint32_t remainder(std::uint32_t a, std::uint32_t b) {
     goto leave;                                                                       \
   }
 
-Cpu::Stop Cpu::run(Cycle limit) {
+Cpu::Stop Cpu::execute(Cycle limit) {
 #define BRICK_CPU_ONE(name) &&Run##name,
 #define BRICK_CPU_TWO(name) &&Run##name, &&RunC##name,
   static const void* const kLabels[] = {BRICK_CPU_OPERATIONS(BRICK_CPU_ONE, BRICK_CPU_TWO)};

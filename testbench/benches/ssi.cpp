@@ -172,7 +172,7 @@ SsiBench::SsiBench(BenchContext& b)
     if (cycle_) cycle_(c);
     const Tick edge = bus_edge(c, machine);
     if (c.x && !c.write && c.address == (geo_ ? regs::ssi_geo::kRefused : regs::ssi_brick::kRefused).address)
-      counts_.push_back({edge, c.data});
+      counts_.emplace_back(edge, c.data);
     if (c.x || c.write || c.on_chip) return;
     for (unsigned n = 0; n < channels(); ++n)
       if (c.address - position_word(n) < (geo_ ? 1u : 2u))

@@ -17,6 +17,7 @@ namespace brick {
 namespace {
 
 constexpr unsigned kPace = 8;                  // characters in a phase period while a motor is enabled
+constexpr unsigned kRareRealTime = 4;          // I8: the servo task looks at motors in turn
 constexpr unsigned kSegment = 5, kAhead = 20;  // ms; Isx20
 constexpr std::uint64_t kGatheringServo = 10'000, kBrickPhase = 6'000, kBrickServo = 10'000;
 
@@ -73,8 +74,11 @@ class TaskLoad {
   void set_up();
   void start();
   void own_times(const std::string& name, double ms, std::uint64_t phase, std::uint64_t servo);
+  void judge(const std::string& name, const TaskTimes& tasks, std::uint64_t phase, std::uint64_t servo);
   void moved(const std::string& name);
   void never_pausing_host(const std::string& name, double ms);
+  void abort(const std::string& name);
+  void rapid();
   void segments();
   void brick_clocks();
 
@@ -113,6 +117,8 @@ void TaskLoad::set_up() {
     at(83, fmt::format("${:X}", host_.address(motor - 1, word::kPhasePosition)));
     at(81, fmt::format("${:X}", host_.address(motor - 1, word::kStatus)));
     at(91, "$800000");
+    at(13, "1000000");
+    at(14, "-1000000");
     at(84, "$FFFC00");
     for (const auto& [k, value] : {std::pair{70u, 4.0},
                                    {71u, 4000.0},
@@ -135,6 +141,10 @@ void TaskLoad::set_up() {
   if (b_.negative) host_.expect("I900,24,100=1", "");
   host_.expect("&1 #1->1000X #2->1000Y #3->1000Z #4->1000A #5->1000B #6->1000C #7->1000U #8->1000V", "");
   host_.expect("OPEN PROG 1 CLEAR LINEAR INC TA4 TS1 TM8", "");
+  for (const char* way : {"0.08", "-0.05", "0.06", "-0.09"})
+    host_.expect(fmt::format("X{0}Y{0}Z{0}A{0}B{0}C{0}U{0}V{0}", way), "");
+  host_.expect("CLOSE", "");
+  host_.expect("OPEN PROG 2 CLEAR RAPID INC", "");
   for (const char* way : {"0.08", "-0.05", "0.06", "-0.09"})
     host_.expect(fmt::format("X{0}Y{0}Z{0}A{0}B{0}C{0}U{0}V{0}", way), "");
   host_.expect("CLOSE", "");
@@ -161,11 +171,16 @@ void TaskLoad::moved(const std::string& name) {
 }
 
 void TaskLoad::own_times(const std::string& name, double ms, std::uint64_t phase, std::uint64_t servo) {
-  const double servo_ms = std::strtod(b_.ask("I10").c_str(), nullptr) / 8'388'608;
   Watch watch(b_);
   host_.wait_ms(ms);
+  judge(name, watch.tasks, phase, servo);
+}
+
+void TaskLoad::judge(const std::string& name, const TaskTimes& tasks, std::uint64_t phase, std::uint64_t servo) {
+  const double servo_ms = std::strtod(b_.ask("I10").c_str(), nullptr) / 8'388'608;
   const auto cycles = [this](TimeFs t) { return static_cast<std::uint64_t>(t / b_.machine.cpu_period()); };
-  const double slice = 3 * servo_ms * 1e12 / 2;  // fs: half of a real-time period, I8 = 2
+  const double real_time = std::strtod(b_.ask("I8").c_str(), nullptr) + 1;
+  const double slice = real_time * servo_ms * 1e12 / 2;  // fs: half of a real-time period
   const struct {
     const char* name;
     unsigned task;
@@ -174,7 +189,7 @@ void TaskLoad::own_times(const std::string& name, double ms, std::uint64_t phase
                 {"servo", TaskTimes::kServo, servo},
                 {"real-time", TaskTimes::kRealTime, cycles(static_cast<TimeFs>(slice))}};
   for (const auto& l : limits) {
-    const TaskTimes::Runs runs = watch.tasks.runs(l.task);
+    const TaskTimes::Runs& runs = tasks.runs(l.task);
     b_.report.step(
         fmt::format("{} task, {}", l.name, name), FallLimits::keeps_cycles(runs.count, cycles(runs.longest), l.most),
         fmt::format("{} cycles of its own at most, of {}; {} times", cycles(runs.longest), l.most, runs.count));
@@ -202,13 +217,31 @@ void TaskLoad::never_pausing_host(const std::string& name, double ms) {
   b_.bus.put_char(0x18, ns_to_ticks(1'000'000));  // ^X: what it has not read
   while (b_.bus.get_char(ns_to_ticks(2'000'000))) {}
   b_.report.step("the controller answers", b_.link.connect(ns_to_ticks(50'000'000)), "I3=2 I6=1 I4=0");
+  judge(name, watch.tasks, FallLimits::kPhaseCycles, FallLimits::kServoCycles);
+}
+
+// All motors leave the path and begin to stop in the same servo interrupt.
+void TaskLoad::abort(const std::string& name) {
+  Watch watch(b_);
+  host_.expect("&1A", "");
+  host_.wait_ms(10);
+  judge("abort of " + name, watch.tasks, FallLimits::kPhaseCycles, FallLimits::kServoCycles);
+}
+
+// What costs the servo task most: each motor goes along a path of its own, and all begin, change their acceleration and
+// stop in the same servo interrupts; the servo task looks for what is urgent about two motors, with their limits.
+void TaskLoad::rapid() {
+  host_.say({fmt::format("I8={}", kRareRealTime)});
+  host_.expect("&1B2R", "");
+  own_times("RAPID", 60, FallLimits::kPhaseCycles, FallLimits::kServoCycles);
+  moved("RAPID");
+  abort("RAPID");
+  host_.say({"I8=2"});
 }
 
 // The same program in segments that are looked ahead, from its start on: segments are made as fast as they can be until
 // the buffer is full, and the motors are limited.
 void TaskLoad::segments() {
-  host_.expect("&1A", "");
-  host_.wait_ms(10);
   host_.expect("DELETE GATHER", "");
   host_.expect(fmt::format("&1DEFINE LOOKAHEAD {},10", 2 * kAhead), "");
   host_.say({fmt::format("I5113={} I5120={}", kSegment, kAhead)});
@@ -237,7 +270,7 @@ void TaskLoad::run() {
   if (host_.motors() < 8) return b_.report.fail("eight channels", std::to_string(host_.motors()));
   set_up();
   start();
-  own_times("eight axes", 12, FallLimits::kPhaseCycles, FallLimits::kServoCycles);
+  own_times("eight axes", 60, FallLimits::kPhaseCycles, FallLimits::kServoCycles);
   host_.expect("DELETE GATHER I5000=0 I5049=1 I5050=$FF", "");
   for (unsigned i = 0; i < 8; ++i) host_.expect(fmt::format("I{}=${:X}", 5001 + i, 0x800088 + 0x80 * i), "");
   host_.expect("DEFINE GATHER 4000", "");
@@ -246,7 +279,10 @@ void TaskLoad::run() {
   host_.expect("ENDGATHER I48=0", "");
   never_pausing_host("a host that never pauses", 10);
   moved("factory clocks");
+  abort("a program");
+  rapid();
   segments();
+  abort("segments");
   brick_clocks();
   start();
   own_times("Brick clocks, I52=24", 10, kBrickPhase, kBrickServo);

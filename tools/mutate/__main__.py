@@ -1,8 +1,10 @@
 """./dev mutate KIND [NAME...]: mutants of the sources, and which test kills each. docs/mutation.md has the scores.
 
   mutate rtl pic_8259              150 mutants of the module, drawn evenly; all where there are fewer
+  mutate firmware motion           the same of a folder of the firmware
   mutate rtl --changed --resume    modules whose inputs differ from those of their results
-  mutate report [--check]          docs/mutation.md from results/mutation; --check: it is fresh, each survivor explained
+  mutate report [--check]          docs/mutation.md from results/mutation; --check: it is fresh, no reason is of a dead
+                                   mutant; --release: and each survivor has one
   mutate again [--count 20]        mutants that the results have as killed; each must die again
 Exit status: 0 done, 1 number 0 fails, something cannot be built or a check fails, 2 there is no such thing.
 """
@@ -35,9 +37,9 @@ def positive(text):
 def arguments():
     parser = argparse.ArgumentParser(prog="./dev mutate", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", help="rtl, report or again")
-    parser.add_argument("names", nargs="*", metavar="NAME", help="modules; all when none is given")
-    parser.add_argument("--seed", type=int, default=1, help="of the drawing (1)")
+    parser.add_argument("kind", help="rtl, firmware, report or again")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="modules, folders; all when none is given")
+    parser.add_argument("--seed", type=int, help="of the drawing (1; again: the commit)")
     parser.add_argument("--count", type=positive, help="mutants a module that are not proved equal (150; again: 20)")
     parser.add_argument("--all", action="store_true", help="every mutant of the module")
     parser.add_argument("--changed", action="store_true", help="modules whose results are of other inputs")
@@ -46,9 +48,12 @@ def arguments():
     parser.add_argument("--control", type=int, default=50, metavar="N",
                         help="killed mutants that the filter must not prove equal (50)")
     parser.add_argument("--check", action="store_true", help="report: write nothing")
+    parser.add_argument("--release", action="store_true", help="report: open survivors fail")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release", help="the built tree")
     parser.add_argument("--jobs", type=positive, default=int(os.environ.get("BRICK_JOBS", os.cpu_count() or 2)))
     options = parser.parse_args()
+    if options.seed is None and options.kind != "again":
+        options.seed = 1
     if options.all and options.count:
         parser.error("--all and --count: one of them")
     return options
@@ -57,15 +62,15 @@ def arguments():
 def run(modules, options):
     try:
         import again
+        import judges
         from overlay import NoBuild
+        from runner import BadBuild
         from session import Session
-
-        from rtl import BadBuild, Judge
     except ImportError as missing:  # of a package of tools/requirements.txt
         skip(f"{missing.name} is not installed (./dev setup)")
 
     def judge(module):
-        session = Session(Judge(ROOT, options.build, module), options)
+        session = Session(judges.of(module, options.build), options)
         if options.changed and session.is_fresh():
             return 0
         session.run()
@@ -88,8 +93,8 @@ def main():
     options = arguments()
     try:
         if options.kind == "report":
-            sys.exit(report.main(options.check))
-        modules = plan.choose("rtl" if options.kind == "again" else options.kind, options.names)
+            sys.exit(report.main(options.check, options.release))
+        modules = plan.choose(options.kind, options.names)
     except plan.Unknown as unknown:
         print(f"mutate: {unknown}", file=sys.stderr)
         sys.exit(2)

@@ -41,10 +41,10 @@ class Mutant:
         return (self.file, self.text, self.place.operator, self.change, self.repeat)
 
 
-def mutants_of(file, source, places):
-    """`source`: the file's bytes."""
+def mutants_of(file, source, places, first=1):
+    """`source`: the file's bytes. `first`: the number of the first."""
     lines, found, seen = source.decode().splitlines(), [], collections.Counter()
-    for number, place in enumerate(sorted(places, key=lambda p: (p.start, p.end, p.operator, p.new)), 1):
+    for number, place in enumerate(sorted(places, key=lambda p: (p.start, p.end, p.operator, p.new)), first):
         line = source.count(b"\n", 0, place.start) + 1
         plain = Mutant(number, file, line, lines[line - 1].strip(), place)
         found.append(dataclasses.replace(plain, repeat=seen[plain.key]))
@@ -62,6 +62,16 @@ def draw(mutants, count, seed):
     rest = [m for m in mutants if m not in set(first)]
     picks.shuffle(rest)
     return first, rest
+
+
+def sources_of(path):
+    """The file, or of a folder the C files in it."""
+    return sorted(path.glob("*.c")) if path.is_dir() else [path]
+
+
+def source_hash(path):
+    """Of what is mutated: it is stale when this differs."""
+    return hash_of(*sources_of(path))
 
 
 def hash_of(*parts):

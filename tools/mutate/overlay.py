@@ -98,12 +98,12 @@ class Overlay:
             files = slow if part == "slow" else [f for f in sorted(mdir.glob("*.cpp")) if f not in slow]
             (self.out / f"{model.prefix}_{part}.cpp").write_text("".join(f'#include "{f}"\n' for f in files))
 
-    def build(self, program, boards):
-        """The program, built; `boards`: also its models of whole boards with two and five ICs."""
+    def build(self, program, boards, more=()):
+        """The program, built; `boards`: also its models of whole boards with two and five ICs. `more`: objects."""
         models = [m for m in program.models.values()
                   if any(str((pathlib.Path(m.folder) / s).resolve()) in self.replaced for s in m.sources)
                   and (not m.prefix.startswith("Vboard_") or (boards and m.prefix != BIGGEST))]
-        includes, objects, headers = [], [], []
+        includes, objects, headers = [], list(more), []
         for model in models:
             mdir = self.verilate(model)
             self.joined(model, mdir)

@@ -15,8 +15,9 @@ class Unknown(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Module:
+    kind: str
     name: str
-    file: str
+    file: str  # or the folder of the files
     tops: tuple  # of the filter, in turn; none: no filter
     proof: str  # of testbench/formal; "": none
     opinion: tuple
@@ -42,7 +43,7 @@ def read(file=FILE):
     kinds = {}
     for kind, modules in table.items():
         kinds[kind] = {
-            name: Module(name, row["file"], tuple(row.get("tops", [name])), row.get("proof", ""),
+            name: Module(kind, name, row["file"], tuple(row.get("tops", [name])), row.get("proof", ""),
                          tests(row["opinion"], sets), tests(row.get("board", []), sets),
                          tests(row.get("slip", []), sets))
             for name, row in modules.items()}
@@ -50,10 +51,11 @@ def read(file=FILE):
 
 
 def choose(kind, names):
-    """The modules of a kind that have these names, all where there are none."""
+    """The modules of a kind that have these names, all where there are none; 'again': of any kind."""
     kinds = read()
+    kinds["again"] = {name: module for modules in kinds.values() for name, module in modules.items()}
     if kind not in kinds:
-        raise Unknown(f"no '{kind}' is mutated; there is: {', '.join(kinds)}")
+        raise Unknown(f"no '{kind}' is mutated; there is: {', '.join(sorted(kinds))}")
     unknown = [name for name in names if name not in kinds[kind]]
     if unknown:
         raise Unknown(f"{kind}: no module {', '.join(unknown)}; there is: {', '.join(kinds[kind])}")

@@ -1,6 +1,7 @@
 """docs/mutation.md, made of the results in results/mutation and of the reasons in reasons.toml.
 
-A survivor without a reason is a problem; so is a reason whose mutant is dead, or of which no result knows.
+A reason whose mutant is dead, or of which no result knows, is a problem. A survivor without a reason is open: it is
+counted, and is a problem of a release.
 """
 
 import collections
@@ -12,7 +13,7 @@ import tomllib
 import plan
 import records
 from common import ROOT
-from mutant import hash_of
+from mutant import source_hash
 from runner import ALIVE, EQUAL, KILLED, OUTSIDE
 
 PAGE = ROOT / "docs/mutation.md"
@@ -27,19 +28,22 @@ HEAD = """# Mutants
 What would the tests notice? A mutant is the source with one place changed: an operator, a comparison, a constant, a
 case item, an enable, a reset, a condition, a statement left out. `./dev mutate rtl NAME` finds the places with slang's
 parser, puts many mutants into one Verilated model, of which a number chooses one, and runs the module's tests on each;
-number 0 is the module as it is and passes. The first failure stops.
+`./dev mutate firmware FOLDER` does so with Clang's parser, the native build of the firmware and the tests that come to
+the place. Number 0 is the source as it is and passes. The first failure stops.
 
-- **score**: killed of killed and alive. The mutant stands in the RTL alone and every comparison of RTL and model is
-  off: the tests have values of their own, the proof has its rules. This holds when both sides misread a rule alike.
+- **score**: killed of killed and alive. A mutant of RTL stands in the RTL alone and every comparison of RTL and model
+  is off: the tests have values of their own, the proof has its rules. This holds when both sides misread a rule alike.
 - **slip**: with lock-step and component tests on what was left: a mistake in the RTL alone.
-- **equal**: proved, without a bound, to be the module it was made from; out of the count, another takes its place.
+- **equal**: proved, without a bound, to be the module it was made from; of C, the same object code at -O2; out of the
+  count, another takes its place.
 - **outside**: ended by the wall clock or a crash without a report that names its place; out of the count too.
 - **at least**: the lower end of what the score of all mutants of the module may be, at 95 % (Wilson's interval, one
   side), from those drawn; the score itself where all were judged.
 - **stale**, at the commit: the file has changed since it was judged.
 
-Not mutated: what is fixed before a model runs (widths, parameters, generate blocks, sensitivity lists); `board_sim` and
-the test bench. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the options.
+Not mutated: what is fixed before it runs (widths, parameters, generate blocks, sensitivity lists; initial values of
+static variables, labels, macros with arguments); `board_sim` and the test bench; of the firmware what has no native
+build. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the options.
 """
 
 
@@ -65,13 +69,13 @@ class Score:
     def counted(self):
         return self.killed + self.alive
 
-    def cells(self, complete):
+    def cells(self, complete, has_slip=True):
         counted = self.counted()
         if counted == 0:
             return ["-", "-", "-"]
         low = self.killed / counted if complete else wilson(self.killed, counted)
         slip = (self.killed + self.slip_only) / counted
-        return [percent(self.killed / counted), percent(low), percent(slip)]
+        return [percent(self.killed / counted), percent(low), percent(slip) if has_slip else "-"]
 
 
 def percent(share):
@@ -97,28 +101,32 @@ def gather(kinds):
     return {key: value for key, value in found.items() if value[1]}
 
 
+def open_of(results, given):
+    """Survivors without a reason, and what stands outside the score where that is too much of a module."""
+    found = []
+    for (kind, name), (_, rows) in results.items():
+        where = f"results/mutation/{kind}/{name}"
+        outside = [row for row in rows if row["status"] == OUTSIDE]
+        many = outside if len(outside) > MOST_OUTSIDE * len(rows) else []
+        found += [f"{where}: {row['file']}:{row['line']}: survivor without a reason in tools/mutate/reasons.toml: "
+                  f"{row['operator']}: {row['change']}" for row in survivors(rows) if records.key(row) not in given]
+        found += [f"{where}: outside the score, and more than {MOST_OUTSIDE:.0%} of the module: "
+                  f"{row['file']}:{row['line']}: {row['change']}: {row['by']}"
+                  for row in many if records.key(row) not in given]
+    return found
+
+
 def problems_of(results, given):
     problems, seen = [], set()
     for (kind, name), (heads, rows) in results.items():
         where = f"results/mutation/{kind}/{name}"
-        for row in survivors(rows):
-            key = records.key(row)
-            seen.add(key)
-            if key not in given:
-                problems.append(f"{where}: {row['file']}:{row['line']}: survivor without a reason in "
-                                f"tools/mutate/reasons.toml: {row['operator']}: {row['change']}")
+        seen |= {records.key(row) for row in rows if row in survivors(rows) or row["status"] == OUTSIDE}
         for row in rows:
             key = records.key(row)
             if key in given and key not in seen:
                 seen.add(key)
                 problems.append(f"tools/mutate/reasons.toml: a reason for a mutant that is {row['status']} "
                                 f"({row['by']}): {row['file']}: {row['change']}")
-        outside = [row for row in rows if row["status"] == OUTSIDE]
-        if len(outside) > MOST_OUTSIDE * len(rows):
-            problems += [f"{where}: outside the score, and more than {MOST_OUTSIDE:.0%} of the module: "
-                         f"{row['file']}:{row['line']}: {row['change']}: {row['by']}" for row in outside
-                         if records.key(row) not in given]
-            seen |= {records.key(row) for row in outside}
         for head in heads:
             problems += [f"{where}: mutant {n} is proved equal, yet a test kills it" for n in head["equal_yet_killed"]]
     problems += [f"tools/mutate/reasons.toml: no result has this mutant: {key[0]}: {key[1]}: {key[3]}"
@@ -140,15 +148,16 @@ def page(results, given):
             everything, seconds = everything + rows, seconds + score.seconds + building
             complete = score.counted() + score.equal + score.outside == head["mutants"]
             tree = head["commit"] + (" and changes" if head["dirty"] else "")
-            if any(h["source"] != hash_of(ROOT / h["file"]) for h in heads):
+            if any(h["source"] != source_hash(ROOT / h["file"]) for h in heads):
                 tree += ", stale"
             lines.append("| " + " | ".join(map(str, [
                 f"`{name}`", head["mutants"], len(rows), score.equal, score.outside, score.alive,
-                *score.cells(complete), f"{score.seconds + building:.0f}", head["seed"], tree])) + " |")
+                *score.cells(complete, of == "rtl"), f"{score.seconds + building:.0f}", head["seed"], tree])) + " |")
         score = Score(everything)
         lines.append("| " + " | ".join(map(str, [
             "together", sum(h[0]["mutants"] for (of, _), (h, _) in results.items() if of == kind), len(everything),
-            score.equal, score.outside, score.alive, *score.cells(False), f"{seconds:.0f}", "", ""])) + " |")
+            score.equal, score.outside, score.alive, *score.cells(False, kind == "rtl"), f"{seconds:.0f}", "",
+            ""])) + " |")
         lines += ["", "### Survivors", ""]
         if score.alive == 0:
             lines.append("None.")
@@ -156,22 +165,24 @@ def page(results, given):
             for row in survivors(rows) if of == kind else []:
                 where = f"`{row['file']}`, `{row['text']}`"
                 slip = " (lock-step sees it)" if row["status"] == KILLED else ""
-                reason = " ".join(given.get(records.key(row), "No reason yet.").split())
+                reason = " ".join(given.get(records.key(row), "Open.").split())
                 lines.append(textwrap.fill(f"- {where}: {row['operator']}, `{row['change']}`{slip}. {reason}", 120,
                                            subsequent_indent="  ", break_long_words=False, break_on_hyphens=False))
         lines.append("")
     return "\n".join(lines).rstrip() + "\n"
 
 
-def main(check):
+def main(check, release):
     kinds, given = plan.read(), reasons()
     results = gather(kinds)
-    text, problems = page(results, given), problems_of(results, given)
+    text, problems, still_open = page(results, given), problems_of(results, given), open_of(results, given)
+    if release:
+        problems += still_open
     if check and (not PAGE.exists() or PAGE.read_text() != text):
         problems.append("docs/mutation.md is stale: ./dev mutate report")
     if not check:
         PAGE.write_text(text)
     for problem in problems:
         print(problem)
-    print(f"mutation: {len(problems)} problem(s)" if problems else "mutation: clean")
+    print(f"mutation: {len(still_open)} open; " + (f"{len(problems)} problem(s)" if problems else "clean"))
     return 1 if problems else 0

@@ -12,14 +12,10 @@ import schemata
 import verilog
 from equal import Filter
 from mutant import hash_of, mutants_of
-from runner import ALIVE, EQUAL, KILLED, Verdict
+from runner import ALIVE, EQUAL, KILLED, BadBuild, Verdict
 
 FOLDER = pathlib.Path(__file__).parent
 FILTER_LIMIT, PROOF_LIMIT, ZERO_LIMIT = 20, 120, 600  # s
-
-
-class BadBuild(Exception):
-    """Number 0 does not pass, or nothing can be built."""
 
 
 @dataclasses.dataclass
@@ -33,6 +29,8 @@ class Stage:
 
 
 class Judge:
+    spare = None  # mutants to draw on when one is equal; the model holds all
+
     def __init__(self, root, tree, module):
         self.root, self.tree, self.module = root, tree, module
         self.source = (root / module.file).read_bytes()
@@ -124,6 +122,10 @@ class Judge:
                               self.out / "proof" / str(mutant.number), PROOF_LIMIT)
         seconds = time.monotonic() - begin
         return Verdict(KILLED, f"proof {self.module.proof}: {rule}", seconds) if rule else Verdict(ALIVE, "", seconds)
+
+    def again(self, mutant, by):
+        """`by`: what killed it. All are built and pass at number 0, so all may kill it."""
+        return self.by_tests(self.stages[0], mutant)
 
     def judge(self, mutant):
         """(stage, verdict): of the first that does not leave it alive. What lock-step alone kills has stage 'slip' and

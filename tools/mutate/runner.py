@@ -15,6 +15,10 @@ REPORTS = re.compile(r"^(\S+:\d+(?::\d+)?: runtime error: .*|.*ERROR: AddressSan
                      r"|\S+:\d+: .*Assertion.*failed.*|%Error: \S+:\d+: Assertion failed.*)$", re.M)
 
 
+class BadBuild(Exception):
+    """Number 0 does not pass, or nothing can be built."""
+
+
 @dataclasses.dataclass(frozen=True)
 class Verdict:
     status: str
@@ -30,9 +34,9 @@ class Tests:
     filter: str
 
 
-def run(binary, tests, number, limit, compare, folder):
-    """`compare`: rigs with both engines compare them."""
-    environment = {**os.environ, "BRICK_MUTANT": str(number), "BRICK_COMPARE": "on" if compare else "off"}
+def run(binary, tests, number, limit, compare, folder, **more):
+    """`compare`: rigs with both engines compare them. `more`: of the environment."""
+    environment = {**os.environ, **more, "BRICK_MUTANT": str(number), "BRICK_COMPARE": "on" if compare else "off"}
     environment.pop("GTEST_TOTAL_SHARDS", None)
     begin = time.monotonic()
     command = [str(binary), f"--gtest_filter={tests.filter}", "--gtest_brief=1", "--gtest_fail_fast"]
@@ -64,5 +68,6 @@ def judge(status, said, tests, seconds):
         return Verdict(KILLED, f"{tests.program}: {failed.group(1).rstrip(',')}", seconds)
     report = REPORTS.search(said)
     if report:
-        return Verdict(KILLED, f"{tests.program}: {report.group(1)[:200]}", seconds)
+        what = re.sub(r"^==\d+==ERROR: | on (unknown )?address.*", "", report.group(1))
+        return Verdict(KILLED, f"{tests.program}: {what[:200]}", seconds)
     return Verdict(OUTSIDE, f"{tests.program}: ends with status {status}", seconds)

@@ -18,6 +18,23 @@ class Verilog:
         return f"begin if ({wanted}) {inner} end"
 
 
+class C:
+    """The number is a variable of reached.cpp, which also keeps what was reached."""
+
+    def __init__(self, file):
+        self.head = ("extern unsigned brick_mutant_number;\nextern unsigned char brick_mutant_reached[];\n"
+                     "static inline int brick_mutant(unsigned n) {\n  brick_mutant_reached[n] = 1;\n"
+                     f'  return brick_mutant_number == n;\n}}\n#line 1 "{file}"\n')
+
+    def expression(self, mutants, inner):
+        chosen = "".join(f"brick_mutant({m.number}) ? ({m.place.new}) : " for m in mutants)
+        return f"({chosen}({inner}))"
+
+    def statement(self, mutants, inner):
+        wanted = " && ".join(f"!brick_mutant({m.number})" for m in mutants)
+        return f"{{ if ({wanted}) {inner} }}"
+
+
 def write(source, mutants, language):
     """The text with all of `mutants` in it. What a mutant puts in its place is the original text below it: one number
     is chosen at a time."""

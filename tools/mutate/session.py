@@ -1,4 +1,4 @@
-"""One module, judged: mutants are drawn, built together, run, filtered and written down."""
+"""One module or folder, judged: mutants are drawn, built together, run, filtered and written down."""
 
 import collections
 import concurrent.futures
@@ -10,7 +10,7 @@ import time
 
 import records
 from common import GIT, ROOT
-from mutant import draw, hash_of
+from mutant import draw, source_hash
 from runner import EQUAL, KILLED
 
 DEFAULT_COUNT = 150
@@ -30,7 +30,7 @@ def tree():
 class Session:
     def __init__(self, judge, options):
         self.judge, self.options = judge, options
-        self.path = records.path_of("rtl", judge.module.name, options.part)
+        self.path = records.path_of(judge.module.kind, judge.module.name, options.part)
         self.inputs = judge.inputs()
         self.rows, self.faults, self.begin = {}, [], time.monotonic()
         self.count = None if options.all else options.count or DEFAULT_COUNT
@@ -53,6 +53,7 @@ class Session:
     def run(self):
         options = self.options
         first, rest = draw(self.judge.mutants, self.count, options.seed)
+        rest = rest[:self.judge.spare]
         if options.part:
             k, n = options.part
             first, rest = first[k - 1::n], rest[k - 1::n]
@@ -89,7 +90,7 @@ class Session:
 
     def save(self, taken, done=False):
         head = {"module": self.judge.module.name, "file": self.judge.module.file, "inputs": self.inputs,
-                "source": hash_of(self.judge.source),
+                "source": source_hash(ROOT / self.judge.module.file),
                 "seed": self.options.seed, "mutants": len(self.judge.mutants), "count": self.count,
                 "done": done, **self.tree,
                 "time": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),

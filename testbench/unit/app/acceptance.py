@@ -303,6 +303,81 @@ def line_cover():
         check(r.returncode == 2 and "--cover" in r.stderr and r.stderr.count("\n") == 1, f"{r}")
 
 
+PROFILED = """OPEN PLC 3 CLEAR
+P4=1
+P1=SIN(P2)+COS(P2)+TAN(P2)+SIN(P2)+COS(P2)+TAN(P2)+SIN(P2)+COS(P2)+TAN(P2)
+CLOSE
+OPEN PROG 1 CLEAR
+P3=1
+P3=1
+P3=SIN(P2)+COS(P2)+TAN(P2)+SIN(P2)+COS(P2)+TAN(P2)+SIN(P2)+COS(P2)+TAN(P2)
+DWELL5
+CLOSE
+I5=2
+^A
+@wait 20ms
+ENABLE PLC 3
+&1B1R
+@wait 60ms
+"""  # each statement of an assignment of a constant is one word, as LIST with a start shows
+
+
+def profile():
+    """--profile: callgrind's format; sums of calls are sums of lines; the dear lines are named; the run is the same."""
+    columns = ["Cycles", "Background", "RealTime", "HostPort", "Servo", "Phase"]
+
+    def run(folder, *options):
+        script, wave = folder / "profiled.txt", folder / "run.vcd"
+        script.write_text(PROFILED)
+        r = brick("exec", "--plant", "dac8", "--load", "dac8", "--wave", str(wave), "--trace", "bus.*", *options,
+                  str(script))
+        check(r.returncode == 0, f"{options}: {r}")
+        return r.stderr, [line for line in wave.read_text().splitlines() if line[:1] != "$"]
+
+    def read(lines):
+        """Cycles of each function itself, of its calls, and of the calls of it, a list of columns each."""
+        own, below, of = ({} for _ in range(3))
+        function = callee = None
+        for line in lines:
+            key, _, value = line.partition("=")
+            if key == "fn":
+                function = value
+            elif key == "cfn":
+                callee = value
+            elif line[:1].isdigit():
+                counts = list(map(int, line.split()[1:]))
+                check(len(counts) == len(columns) and counts[0] == sum(counts[1:]), line)
+                for table, name in ((of, callee), (below, function)) if callee else ((own, function),):
+                    table[name] = [a + b for a, b in zip(table.get(name, [0] * len(counts)), counts, strict=True)]
+                callee = None
+        return own, below, of
+
+    with tempfile.TemporaryDirectory() as place:
+        folder = pathlib.Path(place)
+        file = folder / "profile.out"
+        told, with_profile = run(folder, "--profile", str(file))
+        check(run(folder)[1] == with_profile and len(with_profile) > 1000, "--profile changes the run")
+        for task, line in (("background", "PLC 3, word 1"), ("real-time ", "PROG 1, word 2")):
+            found = [row for row in told.splitlines() if row.startswith(task)]
+            check(len(found) == 1 and found[0].endswith(line), f"{task}: {found}, expected {line}")
+        lines = file.read_text().splitlines()
+        check("events: " + " ".join(columns) in lines and "positions: line" in lines, lines[:12])
+        own, below, of = read(lines)
+        # All that an interrupt does stands below the vector; and who is only called is as dear as its calls.
+        total = [sum(column) for column in zip(*own.values(), strict=True)]
+        for task in ("RealTime", "HostPort", "Servo", "Phase"):
+            i = columns.index(task)
+            whole = own["trap_vector"][i] + below["trap_vector"][i]
+            check(whole == total[i] > 10000, f"{task}: {whole} in and below trap_vector, expected {total[i]}")
+        took = {f: [a + b for a, b in zip(own[f], below.get(f, [0] * 6), strict=True)] for f in of}
+        unlike = [f for f in of if of[f] != took[f]]
+        check(len(of) > 400 and len(unlike) <= 5, f"of {len(of)} functions, calls of these differ from them: {unlike}")
+        r = subprocess.run(["callgrind_annotate", str(file)], capture_output=True, text=True)
+        check(r.returncode == 0 and f"{total[0]:,}" in r.stdout and "position_loop_servo" in r.stdout, f"{r}")
+        r = brick("run", "smoke", "--profile", str(folder / "none/profile.out"))
+        check(r.returncode == 2 and "--profile" in r.stderr and r.stderr.count("\n") == 1, f"{r}")
+
+
 def bad_input():
     """One line on stderr that says what, where, and what was expected; exit status 2."""
     with tempfile.TemporaryDirectory() as folder:

@@ -16,7 +16,7 @@ struct Kinds : ::testing::Test {
     run.seed = seed;
     run.choice = bench + " " + std::to_string(seed);
     runs.push_back(run);
-    results.push_back(Result{verdict, step, says});
+    results.emplace_back(Result{verdict, step, says});
   }
   std::vector<Bucket> buckets() const { return buckets_of(runs, results); }
   std::vector<regress::Run> runs;

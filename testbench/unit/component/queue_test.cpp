@@ -136,7 +136,7 @@ TEST(RegisterQueue, PayloadsThatSayNothingAreErrors) {
       const auto empty = i.payload(tlm::TLM_READ_COMMAND, kOutA), odd = i.payload(tlm::TLM_READ_COMMAND, kOutA);
       empty->set_data_ptr(nullptr);
       EXPECT_EQ(i.send(empty), tlm::TLM_GENERIC_ERROR_RESPONSE);
-      odd->set_command(static_cast<tlm::tlm_command>(7));
+      odd->set_command(static_cast<tlm::tlm_command>(3));
       EXPECT_EQ(i.send(odd), tlm::TLM_COMMAND_ERROR_RESPONSE);
     });
   });

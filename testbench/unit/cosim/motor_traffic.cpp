@@ -113,8 +113,10 @@ void MotorTraffic::bus_step() {
       if (reset_at_ != kNever) break;
       if (options_.reset_one_in != 0 && one_in(options_.reset_one_in)) {
         reset_at_ = bus_at_ + below(20);
-      } else if (bus_at_ >= options_.silent_at || (options_.reset_one_in != 0 && one_in(10 * options_.reset_one_in))) {
+      } else if (bus_at_ >= options_.silent_at ||
+                 (options_.may_trip && options_.reset_one_in != 0 && one_in(10 * options_.reset_one_in))) {
         options_.silent_at = kNever;
+        options_.may_trip = false;
         bus_at_ += kTripTime;
         reset_at_ = bus_at_ + below(200'000);
       }
@@ -221,7 +223,8 @@ void MotorTraffic::choose_access() {
   }
 }
 
-// Any word of a MACRO IC, those that are built more often. Now and then it drives the clocks.
+// Any word of a MACRO IC, those that are built more often. Now and then it drives the clocks; the one whose
+// clocks they are goes on, or all would stand still until a reset, which may be a whole life away.
 void MotorTraffic::choose_macro_access() {
   namespace map = regs::macro_ic;
   constexpr std::uint32_t kBuilt[] = {0x00, 0x02, map::kClockControl.address, map::kPwmControl.address, 0x0E, 0x0F,
@@ -231,7 +234,9 @@ void MotorTraffic::choose_macro_access() {
   const bool x = one_in(2), clock = x && offset == map::kClockControl.address,
              pwm = x && offset == map::kPwmControl.address;
   if (one_in(3) || ((clock || pwm) && !options_.moving_clocks)) return read_at(address, x);
-  write_at(address, x, clock ? clock_word(one_in(8)) : pwm ? pwm_word() : below(1u << 24));
+  if (!clock) return write_at(address, x, pwm ? pwm_word() : below(1u << 24));
+  const bool drives = one_in(8);
+  write_at(address, x, clock_word(drives || (options_.macro_drives && address == macro_ics_.front() + offset)));
 }
 
 void MotorTraffic::write_at(std::uint32_t address, bool x, std::uint32_t word) {

@@ -13,14 +13,14 @@
 namespace brick {
 
 struct MotorTrafficOptions {
-  std::uint32_t ics = 1;      // that take part, as in BoardInputs::fitted; the lowest drives the clocks
-  Tick bus_pause = 300;       // between two accesses at most, but for long_pause
-  Tick pins_pause = 750;      // between two changes of the pins of an IC, about at most
-  bool moving_clocks = true;  // short periods, changed now and then; else as after a reset, and left alone
-  unsigned reset_one_in =
-      2000;  // accesses between two resets, on average, ten times that between two trips of the watchdog; 0 = neither
-  bool macro_drives = false;  // the first MACRO IC drives the clocks
-  Tick silent_at = kNever;    // Port A rests from there until the watchdog has tripped, and a reset follows
+  std::uint32_t ics = 1;         // that take part, as in BoardInputs::fitted; the lowest drives the clocks
+  Tick bus_pause = 300;          // between two accesses at most, but for long_pause
+  Tick pins_pause = 750;         // between two changes of the pins of an IC, about at most
+  bool moving_clocks = true;     // short periods, changed now and then; else as after a reset, and left alone
+  unsigned reset_one_in = 2000;  // accesses between two resets, on average; 0 = none
+  bool may_trip = true;          // once, in ten times as many, Port A rests for 3,000,000 ticks: the watchdog trips
+  bool macro_drives = false;     // the first MACRO IC drives the clocks
+  Tick silent_at = kNever;       // Port A rests from there until the watchdog has tripped, and a reset follows
   // Accesses between two failures of 5 V, each followed by 60 more, every fifth a write of a channel's control word,
   // and a reset; 0 = none.
   unsigned fail_every = 0;

@@ -213,6 +213,9 @@ TEST_F(KinematicStops, AHostThatSetsTheErrorBit) {
   ASSERT_EQ(host("&1B1R"), "");
   platform::servo_ticks(300);
   EXPECT_TRUE(run_is_running(0)) << "what was set before the start means nothing";
+  ASSERT_EQ(host("WY$203F,$BFFFFF WX$203F,$FFFFFF"), "");
+  platform::servo_ticks(3);
+  EXPECT_TRUE(run_is_running(0)) << "other bits mean nothing";
   ASSERT_EQ(host("M5182=1"), "");
   platform::servo_ticks(3);
   EXPECT_FALSE(run_is_running(0));

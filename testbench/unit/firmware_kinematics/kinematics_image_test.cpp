@@ -48,7 +48,8 @@ class KinematicsImage : public ::testing::Test {
     accepted("LINEAR X-20 Y5");
     accepted("CIRCLE1 X20 Y-5 I10 J0 Q50=Q50+1");
     accepted("ENDWHILE CLOSE");
-    segments = (8 * 100 + 20) / isx13 + 3;
+    const int whole = (8 * 100 + 20) / isx13;
+    segments = whole + 3;
   }
   // Of programs that run in systems 1 to `count` at once.
   double run(int count) {

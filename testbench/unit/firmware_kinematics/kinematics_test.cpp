@@ -188,6 +188,21 @@ TEST_F(Kinematics, PvtRunsOnInTheJoints) {
   EXPECT_NEAR(hand().x, 530, 1e-3);
 }
 
+// Both at the velocity that they have at the end, until each stops by its Ixx15, 0.25 counts/ms^2: from 10 and 20
+// counts/ms in 10^2 / (2 * 0.25) and 20^2 / (2 * 0.25) counts.
+TEST_F(Kinematics, PvtRunsOnWithEachJoint) {
+  fit({"I", "I"});
+  program("FORWARD", {"Q7=P1/1000 Q8=P2/1000"});
+  program("INVERSE", {"P1=Q7*1000 P2=Q8*1000 P101=Q17*1000 P102=Q18*1000"});
+  ASSERT_EQ(host("I5150=1 I5190=1000"), "");
+  store({"PVT100", "X1:10 Y2:20"});
+  run();
+  platform::servo_ticks(400);
+  const double first = (at(1) - 1000 - 200) / 10, second = (at(2) - 2000 - 800) / 20;  // ms at that velocity
+  EXPECT_GE(first, kTickMs);
+  EXPECT_NEAR(second, first, kTickMs);
+}
+
 TEST_F(Kinematics, RapidGoesToWhereTheProgramHasTheTarget) {
   fit_arm();
   ASSERT_EQ(host("I122=100 I222=100 I119=10 I219=10"), "");

@@ -2,6 +2,11 @@
 // (motion:7.1/8, motion:7.1/9, motion:7.5).
 #include "testbench/unit/firmware_program/moving_motors.h"
 
+extern "C" {
+#include "firmware/motion/segment.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
+}
+
 namespace {
 
 using namespace moving_motors;
@@ -43,34 +48,11 @@ TEST_F(LookaheadOrders, AStepStaysAStepUntilR) {
     }
 }
 
-// S ends a run behind the moves that are calculated: PC is the line of the next one, before and after.
-TEST_F(LookaheadOrders, SLetsTheCalculatedMovesFinish) {
-  Lines lines = {"TM100 TA20 TS0 INC"};
-  for (int i = 0; i < 30; ++i) lines.emplace_back("X2");
-  begin(lines);
-  ASSERT_EQ(host("&1B1R"), "");
-  wait_ms(300);
-  ASSERT_EQ(host("&1S"), "");
-  const std::string next = host("&1PC");
-  const double from = at(1);
-  wait_ms(1500);
-  EXPECT_FALSE(run_is_running(0));
-  EXPECT_EQ(host("&1PC"), next);
-  const int made = static_cast<int>(at(1)) / 2000;
-  EXPECT_EQ(motors[0].trajectory, made * 2000 * 3072) << "at the end of a move";
-  EXPECT_EQ(next, "P1:" + std::to_string(4 + made)) << "statements: TM, TA, TS, INC, and a move each";
-  EXPECT_GE(at(1), from + 20 * kAhead * kSegmentMs - 500) << "20 counts/ms; what is made is calculated";
-  EXPECT_LT(made, 15);
-  ASSERT_EQ(host("&1R"), "");
-  wait_ms(4000);
-  EXPECT_EQ(motors[0].trajectory, 60000 * 3072);
-}
-
-// Q and `/`: the move in which the last segment lies that is made; what is calculated behind it waits for R.
+// Q, `/` and S: the move in which the last segment lies that is made; what is calculated behind it waits for R.
 TEST_F(LookaheadOrders, QuitStopsAtTheEndOfTheMoveThatIsMade) {
   Lines lines = {"TM100 TA20 TS0 INC"};
   for (int i = 0; i < 30; ++i) lines.emplace_back("X2");
-  for (const char* command : {"&1Q", "&1/"}) {
+  for (const char* command : {"&1Q", "&1/", "&1S"}) {
     SCOPED_TRACE(command);
     begin(lines);
     ASSERT_EQ(host("&1B1R"), "");
@@ -112,6 +94,51 @@ TEST_F(LookaheadOrders, PeIsTheLineThatExecutesBackwardsToo) {
   ASSERT_EQ(host("&1>"), "");
   EXPECT_EQ(go(1500), 7u);
   EXPECT_EQ(motors[0].trajectory, 15000 * 3072);
+}
+
+// At every pause of the interrupt that hands over the last pieces, and of those about it: an order is obeyed that was
+// accepted, be it given while the sequence is found to be over.
+TEST_F(LookaheadOrders, AnOrderThatMeetsTheLastPieceIsObeyed) {
+  const auto start = [](unsigned ticks) {
+    begin({"TM200 TA20 TS0", "X5"});
+    ASSERT_EQ(host("I5195=200000 I115=1 &1B1R"), "");
+    platform::servo_ticks(ticks);
+  };
+  start(ticks_of(100));
+  unsigned last = ticks_of(100);
+  for (; segment_is_under_way(0); ++last) platform::servo_ticks(1);
+  unsigned backward = 0;
+  for (const char* order : {"<", "\\", ">", "H", "Q", "A", "S"})
+    for (unsigned before = 0; before < 3; ++before)
+      for (unsigned at_pause = 1, pauses = 1; pauses >= at_pause; ++at_pause) {
+        SCOPED_TRACE(std::string(order) + " at pause " + std::to_string(at_pause) + ", " + std::to_string(before));
+        start(last - 1 - before);
+        fake_task_run_servo();
+        pauses = 0;
+        bool looks = false;
+        platform::real_time_in_slices([&] {
+          if (++pauses != at_pause) return;
+          looks = segment_looks(0);
+          ASSERT_EQ(host(std::string("&1") + order), "");
+        });
+        if (pauses < at_pause) break;
+        wait_ms(600);
+        const bool back = *order == '<' && looks, aborted = *order == 'A';
+        backward += back;
+        if (back) {
+          ASSERT_EQ(motors[0].trajectory, 0);
+          ASSERT_TRUE(run_is_running(0));
+        }
+        if (aborted) {
+          ASSERT_FALSE(run_is_running(0));
+          continue;
+        }
+        if (run_is_running(0)) { ASSERT_EQ(host("&1>"), ""); }
+        wait_ms(600);
+        ASSERT_EQ(motors[0].trajectory, 5000 * 3072);
+        ASSERT_FALSE(run_is_running(0)) << "it begins anew";
+      }
+  EXPECT_GT(backward, 10u);
 }
 
 }  // namespace

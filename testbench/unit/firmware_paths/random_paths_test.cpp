@@ -40,29 +40,43 @@ struct RandomPath {
   std::vector<double> scales;  // counts a unit
 };
 
+// Moves from `first` to before `last` blend; the change of velocity at the begin of each is `changes` long, TA or,
+// where a line came late, less.
+struct Blended {
+  std::size_t first, last;
+  std::vector<double> changes;  // of all moves
+};
+
 // The path of a motor by the time of the program: what its moves have made.
 class Trajectory {
  public:
-  Trajectory(const RandomPath& p, unsigned motor) : p_(p), motor_(motor), corners_{p.ta / 2}, ends_{0} {
-    for (std::size_t k = 0; k < p.times.size(); ++k) {
+  Trajectory(const RandomPath& p, unsigned motor, const Blended& blended)
+      : p_(p), motor_(motor), blended_(blended), corners_{p.ta / 2}, ends_{0} {
+    for (std::size_t k = 0; k < blended.first; ++k) ends_[0] += p.ways[motor][k];
+    for (std::size_t k = blended.first; k < blended.last; ++k) {
       corners_.push_back(corners_.back() + p.times[k]);
       ends_.push_back(ends_.back() + p.ways[motor][k]);
     }
   }
+  double length() const { return corners_.back() + p_.ta / 2; }
   double at(double t) const {
     const double half = p_.ta / 2;
     const auto over = std::upper_bound(corners_.begin() + 1, corners_.end(), t - half) - corners_.begin() - 1;
     auto k = static_cast<std::size_t>(over);
     double sum = ends_[k];
-    for (; k < p_.times.size() && corners_[k] - half < t; ++k) {
-      const double progress = gained(t - corners_[k] + half) - gained(t - corners_[k + 1] + half);
-      sum += made(k, progress / p_.times[k]);
-    }
+    for (; k + 1 < corners_.size() && corners_[k] - half < t; ++k)
+      sum += made(blended_.first + k, (gained(k, t) - gained(k + 1, t)) / p_.times[blended_.first + k]);
     return sum;
   }
 
  private:
-  double gained(double t) const { return risen(t, std::max(p_.ta, 1e-9), p_.ts); }
+  // Behind the change at a corner: it stops at the last one.
+  double gained(std::size_t corner, double t) const {
+    const bool whole = corner == 0 || corner + 1 == corners_.size();
+    const double length = whole ? p_.ta : blended_.changes[blended_.first + corner];
+    const double s = p_.ta > 0 ? p_.ts * length / p_.ta : 0;
+    return risen(t - corners_[corner] + length / 2, std::max(length, 1e-9), s);
+  }
   double made(std::size_t move, double part) const {
     const Arc& arc = p_.arcs[move];
     if (arc.radius == 0 || motor_ < 1 || motor_ > 2) return p_.ways[motor_][move] * part;
@@ -71,6 +85,7 @@ class Trajectory {
   }
   const RandomPath& p_;
   unsigned motor_;
+  const Blended& blended_;
   std::vector<double> corners_, ends_;
 };
 
@@ -171,10 +186,35 @@ class RandomPaths : public MovingMotors {
   }
   // How lines come: in time; late, while the program still calculates; late, and there is none.
   enum class Supply { kFlow, kCalculated, kNone };
+  // Which moves have come to blend, and how long: where lines come in time, all of them by TA.
+  class Joined {
+   public:
+    explicit Joined(const RandomPath& p) : changes_(p.times.size(), p.ta) {}
+    void look() {
+      const path& queue = paths[0];
+      for (std::uint32_t i = 0; i < queue.count; ++i) {
+        const path_move& m = queue.moves[(queue.first + i) % PATH_MOVES];
+        changes_[m.number - 1] = static_cast<double>(m.change) / 4294967296.0;
+      }
+      if (segment_is_under_way(0) && !runs_) begins_.push_back(queue.moves[queue.first].number - 1);
+      runs_ = segment_is_under_way(0);
+    }
+    std::vector<Blended> sequences() const {
+      std::vector<Blended> found;
+      for (std::size_t i = 0; i < begins_.size(); ++i)
+        found.push_back({begins_[i], i + 1 < begins_.size() ? begins_[i + 1] : changes_.size(), changes_});
+      return found;
+    }
+
+   private:
+    std::vector<double> changes_;
+    std::vector<std::size_t> begins_;
+    bool runs_ = false;
+  };
   // Every motor at each servo interrupt, until all is done.
   static std::vector<std::vector<std::int64_t>> execute(
       const RandomPath& p, const std::function<void(unsigned)>& order = [](unsigned) {},
-      const std::function<Supply(unsigned)>& lines = [](unsigned) { return Supply::kFlow; }) {
+      const std::function<Supply(unsigned)>& lines = [](unsigned) { return Supply::kFlow; }, Joined* joined = nullptr) {
     std::vector<std::vector<std::int64_t>> samples(p.motor_count);
     coordinate_system& s = cs();
     std::size_t move = 0;
@@ -182,6 +222,7 @@ class RandomPaths : public MovingMotors {
       if (tick % 3 == 0) {
         for (bool any = true; any;) {
           any = segment_work(0, false);
+          if (joined != nullptr) joined->look();
           const Supply come = lines(tick);
           if (!any && come == Supply::kCalculated && move < p.times.size()) continue;
           if (!any && come == Supply::kFlow && move < p.times.size() && !path_is_full(0) && !s.next_valid) {
@@ -190,6 +231,7 @@ class RandomPaths : public MovingMotors {
           }
           if (move == p.times.size()) s.may_join = false;
           any = any || segment_work(0, true);
+          if (joined != nullptr) joined->look();
         }
       }
       order(tick);
@@ -200,15 +242,16 @@ class RandomPaths : public MovingMotors {
     ADD_FAILURE() << "it does not end";
     return samples;
   }
-  static std::vector<Spline> splines(const RandomPath& p) {
-    double length = p.ta;
-    for (const double time : p.times) length += time;
+  static std::vector<Spline> splines(const RandomPath& p, const Blended& blended) {
     std::vector<Spline> found;
     for (unsigned i = 0; i < p.motor_count; ++i) {
-      const Trajectory path(p, i);
-      found.emplace_back([&](double t) { return path.at(t); }, length, p.period);
+      const Trajectory path(p, i, blended);
+      found.emplace_back([&](double t) { return path.at(t); }, path.length(), p.period);
     }
     return found;
+  }
+  static std::vector<Spline> splines(const RandomPath& p) {
+    return splines(p, {0, p.times.size(), std::vector<double>(p.times.size(), p.ta)});
   }
   static void expect_limits(const RandomPath& p, const std::vector<std::vector<std::int64_t>>& samples) {
     for (unsigned i = 1; i < p.motor_count; ++i) {
@@ -227,19 +270,24 @@ class RandomPaths : public MovingMotors {
     }
   }
   static void expect_path(const std::vector<Spline>& splines, const std::vector<std::vector<std::int64_t>>& samples) {
-    double low = 0;
-    const double length = splines[0].length();
+    expect_path(std::vector<std::vector<Spline>>{splines}, samples);
+  }
+  // Sequences one behind the other: motor 1 tells in which it is, and where.
+  static void expect_path(const std::vector<std::vector<Spline>>& sequences,
+                          const std::vector<std::vector<std::int64_t>>& samples) {
     for (std::size_t n = 0; n < samples[0].size(); n += 7) {
       const double x = static_cast<double>(samples[0][n]) / kUnit;
-      double high = length;
+      std::size_t which = 0;
+      while (which + 1 < sequences.size() && x >= sequences[which + 1][0].at(0)) ++which;
+      const std::vector<Spline>& splines = sequences[which];
+      double low = 0, high = splines[0].length();
       for (int i = 0; i < 50; ++i) (splines[0].at((low + high) / 2) < x ? low : high) = (low + high) / 2;
       for (std::size_t i = 1; i < splines.size(); ++i) {
         const double slope = std::abs(splines[i].at(low + 0.01) - splines[i].at(std::max(0.0, low - 0.01))) /
                              std::max(1e-6, splines[0].at(low + 0.01) - splines[0].at(std::max(0.0, low - 0.01)));
         ASSERT_NEAR(static_cast<double>(samples[i][n]) / kUnit, splines[i].at(low), 1.0 / 16 + slope * 3 / kUnit)
-            << "#" << i + 1 << " at " << low << " ms of the program, interrupt " << n;
+            << "#" << i + 1 << " at " << low << " ms of sequence " << which << ", interrupt " << n;
       }
-      low = 0;  // it may go back
     }
   }
 };
@@ -307,42 +355,61 @@ TEST_F(RandomPaths, WhateverHappensThePathIsTheSame) {
   EXPECT_GT(turned, 100u) << "nothing has gone back";
 }
 
-// No line comes for a while: the moves end at rest, and the next ones begin there. Nothing jumps.
+// No line comes for a while: the moves end at rest, and the next ones begin there. Nothing jumps, and the path is that
+// of sequences which end where lines were missing, to 1/16 count.
 TEST_F(RandomPaths, ADryBufferEndsMovesWithinTheLimits) {
   const int count = count_of_paths(2000), begin = first_path();
+  unsigned stops = 0;
   for (int seed = begin; seed < begin + count && !HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(static_cast<unsigned>(seed)), more = more_of(seed);
     const RandomPath p = random_path(random, &more, Size::kWhole);
     prepare(p);
-    unsigned dry = 50 + random() % 300, dry_end = dry + random() % 500;
+    unsigned dry = 20 + random() % 200, dry_end = dry + 200 + random() % 500;
+    Joined joined(p);
     const auto samples = execute(
         p, [](unsigned) {},
         [&](unsigned tick) {
-          if (tick > dry_end) dry = tick + 50 + random() % 300, dry_end = dry + random() % 500;
+          if (tick > dry_end) dry = tick + 1 + random() % 200, dry_end = dry + 200 + random() % 500;
           return tick >= dry ? Supply::kNone : Supply::kFlow;
-        });
+        },
+        &joined);
     for (unsigned i = 0; i < p.motor_count; ++i) {
       double sum = 0;
       for (const double w : p.ways[i]) sum += w;
       ASSERT_EQ(samples[i].back(), static_cast<std::int64_t>(std::llround(sum * kUnit)));
     }
     expect_limits(p, samples);
+    std::vector<std::vector<Spline>> paths;
+    const auto sequences = joined.sequences();
+    for (const Blended& blended : sequences) paths.push_back(splines(p, blended));
+    expect_path(paths, samples);
+    stops += sequences.size() - 1;
   }
+  if (count > 100) { EXPECT_GT(stops, static_cast<unsigned>(count) / 4) << "sequences that ended for want of a line"; }
 }
 
+// Every other path gets an Isx20 of just 4/3 of its longest stop; of the rest, those whose own is no less are compared.
 TEST_F(RandomPaths, LimitsHoldAndTheTimeIsNearTheOptimum) {
   const int count = count_of_paths(2000);
-  int judged = 0;
+  int judged = 0, compared = 0, least = 0;
   double worst = 0;
-  std::vector<std::pair<int, Size>> seeds = {{4032, Size::kSmall}};  // a sweep looked too briefly
+  // A sweep looked too briefly; two limits left no rate between them but for rounding.
+  std::vector<std::pair<int, Size>> seeds = {{4032, Size::kSmall}, {309030, Size::kWhole}};
   for (int i = 0; i < count; ++i) seeds.emplace_back(first_path() + i, Size::kWhole);
   for (const auto& [seed, size] : seeds) {
     if (count == 0 || HasFailure()) break;
     ++judged;
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(static_cast<unsigned>(seed)), more = more_of(seed);
-    const RandomPath p = random_path(random, &more, size);
+    RandomPath p = random_path(random, &more, size);
+    const auto paths = splines(p);
+    std::vector<optimum::Motor> limited;
+    for (unsigned i = 0; i < p.motor_count; ++i)
+      limited.push_back({paths[i].points(), p.velocity[i], p.acceleration[i]});
+    const optimum::Solver best(limited, p.period);
+    const auto needed = static_cast<int>(std::max<double>(2, std::ceil(best.longest_stop() * 4.0 / 3)));
+    if (seed % 2 == 0 && size == Size::kWhole && needed <= 200) p.lookahead = needed, ++least;
     prepare(p);
     const auto samples = execute(p);
     for (unsigned i = 0; i < p.motor_count; ++i) {
@@ -351,13 +418,9 @@ TEST_F(RandomPaths, LimitsHoldAndTheTimeIsNearTheOptimum) {
       ASSERT_EQ(samples[i].back(), static_cast<std::int64_t>(std::llround(sum * kUnit)));
     }
     expect_limits(p, samples);
-    const auto paths = splines(p);
     expect_path(paths, samples);
-    std::vector<optimum::Motor> limited;
-    for (unsigned i = 0; i < p.motor_count; ++i)
-      limited.push_back({paths[i].points(), p.velocity[i], p.acceleration[i]});
-    const optimum::Solver best(limited, p.period);
-    if (best.longest_stop() * 4 > p.lookahead * 3) continue;
+    if (needed > p.lookahead) continue;
+    ++compared;
     std::size_t begin = 0, end = samples[0].size() - 1;
     while (begin < end && samples[0][begin] == samples[0][0]) ++begin;
     while (end > begin && samples[0][end] == samples[0][end - 1]) --end;
@@ -367,7 +430,9 @@ TEST_F(RandomPaths, LimitsHoldAndTheTimeIsNearTheOptimum) {
         << "optimum " << best.time() << ", Isx20 " << p.lookahead << ", longest stop " << best.longest_stop()
         << ", Isx13 " << p.period << ", TA " << p.ta;
   }
-  std::printf("%d paths, slowest %.3f of the optimum\n", judged, worst);
+  std::printf("%d paths, %d compared, %d with the least Isx20; slowest %.3f of the optimum\n", judged, compared, least,
+              worst);
+  if (count > 100) { EXPECT_GE(4 * compared, judged); }
 }
 
 }  // namespace

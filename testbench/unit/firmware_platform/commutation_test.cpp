@@ -36,9 +36,10 @@ TEST_F(Commutation, SineOutputsAreThoseOfTheDataSheet) {
   std::mt19937 random(random_seed(3));
   const auto pick = [&random](int first, int last) { return std::uniform_int_distribution<int>(first, last)(random); };
   for (int round = 0; round < 60; ++round) {
-    const int cycle = round % 10 == 0 ? 1 << pick(4, 18) : pick(20, 260000), phi = pick(0, 2047);
+    const int ixx71 = round == 5 ? 0 : round % 10 == 0 ? 1 << pick(4, 18) : pick(20, 260000), phi = pick(0, 2047);
+    const int cycle = ixx71 == 0 ? 1 << 24 : ixx71;
     const int id = pick(-9000, 9000), bias_a = pick(-3000, 3000), bias_b = pick(-3000, 3000);
-    set("I171=" + std::to_string(cycle) + " I172=" + std::to_string(phi) + " I177=" + std::to_string(id));
+    set("I171=" + std::to_string(ixx71) + " I172=" + std::to_string(phi) + " I177=" + std::to_string(id));
     set("I129=" + std::to_string(bias_a) + " I179=" + std::to_string(bias_b));
     enable();
     for (int i = 0; i < 50; ++i) {
@@ -48,7 +49,7 @@ TEST_F(Commutation, SineOutputsAreThoseOfTheDataSheet) {
       command(iq);
       phase();
       ASSERT_NEAR(a(), id * table_cosine(index) - iq * table_sine(index) + bias_a, 0.02)
-          << "I171=" << cycle << " position " << position;
+          << "I171=" << ixx71 << " position " << position;
       ASSERT_NEAR(b(), id * table_cosine(index + phi) - iq * table_sine(index + phi) + bias_b, 0.02)
           << "I172=" << phi << " position " << position;
     }

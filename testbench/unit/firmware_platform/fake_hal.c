@@ -16,6 +16,7 @@ static uint32_t memory[2][WORDS], peripheral[2][PERIPHERALS], nothing;
 static uint32_t flash[HAL_FLASH_BYTES / 4];
 static uint32_t straps[6];
 static uint32_t fitted, signals, look;
+static uint32_t stuck_at, stuck_value, stuck_word; /* at 0: none */
 static uint64_t cycles;
 static unsigned breq_edges, writes, strobes;
 static struct fake_edge edges[EDGES];
@@ -51,7 +52,10 @@ static void settle(void) {
 
 static volatile uint32_t* word(bool x, uint32_t address) {
   settle();
-  if (address < WORDS)
+  if (x && address == stuck_at && stuck_at != 0u) {
+    stuck_word = stuck_value;
+    last = &stuck_word;
+  } else if (address < WORDS)
     last = fitted_at(address) ? &memory[x][address] : &nothing;
   else
     last = &peripheral[x][address & (PERIPHERALS - 1u)];
@@ -89,6 +93,7 @@ void fake_hal_power_on(uint32_t ics) {
   cycles = 0;
   breq_edges = writes = strobes = 0;
   look = LOOK_CYCLES;
+  stuck_at = 0;
   nothing = HAL_WORD_MASK;
   last = NULL;
   for (unsigned i = 0; i < FAKE_STACK_WORDS; ++i) stacks[STACK_MAIN][i] = stacks[STACK_SLICES][i] = STACK_MARK;
@@ -133,6 +138,11 @@ void fake_hal_clear_writes(void) {
 static bool clocks_stopped;
 void fake_hal_stop_clocks(bool stopped) { clocks_stopped = stopped; }
 void fake_hal_fit(uint32_t ics) { fitted = ics; }
+
+void fake_hal_stick(uint32_t address, uint32_t value) {
+  stuck_at = address;
+  stuck_value = value;
+}
 
 uint32_t hal_cycles(void) {
   cycles += look;

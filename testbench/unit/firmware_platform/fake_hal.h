@@ -23,8 +23,10 @@ enum { FAKE_IMAGE_WORDS = 1000 };        /* that CHECKSUM adds up: 1, 2, 3, ... 
 enum { FAKE_STACK_WORDS = 256 };         /* of each stack */
 uint32_t* fake_hal_stack(unsigned stack);
 unsigned fake_hal_stack_faults(void);
-unsigned fake_hal_strobes(void);         /* of the hardware watchdog since power-on */
-void fake_hal_fit(uint32_t fitted);      /* changes the ICs without power-on */
+unsigned fake_hal_strobes(void);    /* of the hardware watchdog since power-on */
+void fake_hal_fit(uint32_t fitted); /* changes the ICs without power-on */
+/* The X word of a device at `address` reads as `value` whatever is written, until power-on. */
+void fake_hal_stick(uint32_t address, uint32_t value);
 void fake_hal_stop_clocks(bool stopped); /* no phase interrupt comes */
 
 /* Edges of BREQ in order, newest last. */

@@ -313,18 +313,21 @@ TEST_F(PhaseSearch, AKillEndsTheSearchWithoutAReference) {
 
 TEST_F(PhaseSearch, ALimitEndsTheSearchWithoutAReference) {
   set("I125=$78000");
-  plant::Motor motor = motor_at(100);
-  ASSERT_TRUE(phasing_begin(0));
-  run(motor, 10);
-  protection_pass();
-  run(motor, 1);
-  EXPECT_TRUE(phasing_is_searched(0));
-  set_x(0x78000, 1 << 17);
-  protection_pass();
-  run(motor, 1);
-  EXPECT_FALSE(phasing_is_searched(0));
-  EXPECT_TRUE(phasing_is_missing(0));
-  EXPECT_EQ(motors[0].loop, LOOP_KILLED);
+  for (const unsigned limit : {17, 18}) {
+    set_x(0x78000, 0);
+    plant::Motor motor = motor_at(100);
+    ASSERT_TRUE(phasing_begin(0));
+    run(motor, 10);
+    protection_pass();
+    run(motor, 1);
+    EXPECT_TRUE(phasing_is_searched(0));
+    set_x(0x78000, 1 << limit);
+    protection_pass();
+    run(motor, 1);
+    EXPECT_FALSE(phasing_is_searched(0)) << "bit " << limit;
+    EXPECT_TRUE(phasing_is_missing(0));
+    EXPECT_EQ(motors[0].loop, LOOP_KILLED);
+  }
 }
 
 TEST_F(PhaseSearch, IsMadeByACommand) {

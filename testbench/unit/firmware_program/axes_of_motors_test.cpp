@@ -31,6 +31,20 @@ TEST_F(AxesOfMotors, TurnsAreThoseOfABAndC) {
   for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(motors[i].trajectory, position(ends[i])) << i;
 }
 
+// Three axes of one motor, forwards, and back behind a jog.
+TEST_F(AxesOfMotors, ThreeAxesMakeAMotor) {
+  fit({"1000X+500Y-200Z+10", "1000Y-500X", "-250Z", "100U-200V+300W"});
+  store({"LINEAR TM100 TA20 TS0 X1 Y2 Z3 U1 V2 W3"});
+  run();
+  const double ends[] = {1000 + 1000 - 600 + 10, 2000 - 500, -750, 100 - 400 + 900};
+  for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(motors[i].trajectory, position(ends[i])) << i;
+  motors[0].trajectory = position(ends[0] + 1250);
+  begin();
+  EXPECT_NEAR(start(AXIS_X), 2, 1e-9) << "1000 dX + 500 dY = 1250, 1000 dY - 500 dX = 0, dZ = 0";
+  EXPECT_NEAR(start(AXIS_Y), 2.5, 1e-9);
+  EXPECT_NEAR(start(AXIS_Z), 3, 1e-9);
+}
+
 TEST_F(AxesOfMotors, DistancesBehindATriggerAddUp) {
   fit({"1000X+500Y"});
   ASSERT_EQ(host("I119=1 I120=20 I121=0 I122=20 I192=1 I125=$78000 I124=$120001"), "");

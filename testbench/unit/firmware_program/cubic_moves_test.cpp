@@ -196,7 +196,7 @@ TEST_F(CubicMoves, Spline2FollowsItsCubics) {
 
 // motion:5.4/1: quarters of a us, half a ms to 4095.9998 ms.
 TEST_F(CubicMoves, TimesAreQuartersOfAMicrosecond) {
-  for (const auto& [text, ms] : {std::pair{"PVT5000", 4095.99975}, {"PVT100.00045", 100.0005}, {"PVT0.1", 0.5}}) {
+  for (const auto& [text, ms] : {std::pair{"PVT4096", 4095.99975}, {"PVT100.00045", 100.0005}, {"PVT0.1", 0.5}}) {
     platform::power_up();
     store({std::string(text) + " X1"});
     ASSERT_EQ(host("&1B1R"), "");

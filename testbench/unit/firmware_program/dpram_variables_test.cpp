@@ -183,6 +183,14 @@ TEST_F(DpramVariables, ItemsOfTheRamAreNowhereElse) {
   ASSERT_TRUE(ready());
   EXPECT_EQ(data(2, 0), 0U);
   EXPECT_EQ(data(2, 1), 0x12345678U);
+  ASSERT_EQ(host("WY$78002,$123 WX$78002,$456"), "");  // of a servo IC, behind the RAM
+  write_entry(0, 0x78002, kDpram, 0x12345678);
+  write(1);
+  EXPECT_EQ(host("RHY$78002"), "123");
+  entry(place(kRead, 0), 0x78002, kDpram);
+  begin(1);
+  background(1);
+  EXPECT_EQ(data(1, 0), 0U);
 }
 
 // What was read before I55 went off is not of the set that is ready after it.
@@ -220,6 +228,20 @@ TEST_F(DpramVariables, ListsEndWithTheRam) {
   EXPECT_TRUE(show_at(0x3BAF)) << "its data have no place";
   EXPECT_FALSE(show_at(0x3BB0));
   EXPECT_FALSE(show_at(0xFFFF));
+}
+
+TEST_F(DpramVariables, AListToBeWrittenEndsWithTheRam) {
+  ASSERT_EQ(host("WY$20,0"), "");
+  const auto write_at = [this](unsigned start) {
+    entry(place(start, 0), 0x20, kY);
+    dpram_write_item(place(start, 1), start);
+    ram.write(DPRAM_WRITE_START, static_cast<std::uint16_t>(start));
+    ram.write(DPRAM_WRITE_SIZE, 1);
+    background(1);
+    return host("RHY$20");
+  };
+  EXPECT_EQ(write_at(0x3BAD), "3BAD") << "three items of four bytes";
+  EXPECT_EQ(write_at(0x3BAE), "3BAD") << "its value's second half has no place";
 }
 
 TEST_F(DpramVariables, AnyListIsSurvived) {

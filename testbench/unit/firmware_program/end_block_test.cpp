@@ -71,6 +71,37 @@ TEST_F(EndBlock, RunBehindTheBeginOfTheStopStartsTheNextMoveFromRest) {
   EXPECT_EQ(cs().position[AXIS_X], 200.0);
 }
 
+// motion:5.6/5: the move that waits is the step.
+TEST_F(EndBlock, AStepBehindItMakesTheMoveThatWaits) {
+  platform::power_up();
+  for (const char* line : {"OPEN PROG 1 CLEAR TM300 TA100 TS0", "X100", "X200", "X300", "CLOSE", "B1R"})
+    ASSERT_EQ(host(line), "");
+  platform::servo_ticks(tick_at(150.0));
+  ASSERT_EQ(host("/"), "");
+  for (const double end : {100.0, 200.0, 300.0}) {
+    platform::servo_ticks(tick_at(500.0));
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(x(), end);
+    if (end == 100.0) { EXPECT_EQ(host("PC"), "P1:5") << "behind what waits: TM, TA, TS, X, X"; }
+    ASSERT_EQ(host("S"), "");
+    if (end == 100.0) { EXPECT_EQ(host("PC"), "P1:5"); }
+  }
+}
+
+// What waits is dropped by B: the step is the first move.
+TEST_F(EndBlock, AStepFromTheTopIsItsFirstMove) {
+  begin(100, 100);
+  platform::servo_ticks(tick_at(150.0));
+  ASSERT_EQ(host("/"), "");
+  platform::servo_ticks(tick_at(500.0));
+  ASSERT_EQ(x(), 100.0);
+  ASSERT_EQ(host("B1S"), "");
+  platform::servo_ticks(tick_at(1000.0));
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(host("PC"), "P1:4");
+  EXPECT_EQ(cs().started, 2u) << "X100, twice";
+}
+
 TEST_F(EndBlock, RunBeforeTheBeginOfTheStopBlendsAsIfNothingHadBeen) {
   begin(100, 100);
   platform::servo_ticks(tick_at(100.0));

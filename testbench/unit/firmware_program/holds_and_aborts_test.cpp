@@ -252,8 +252,12 @@ TEST_F(HoldsAndAborts, JogsGoOutOfALimitOnly) {
   ASSERT_EQ(host("I113=1000 I123=10 #1J/"), "");
   ticks(10);
   motors[0].trajectory = motors[0].commanded = position(50);
-  for (const bool up : {true, false}) {
-    auto& limit = up ? motors[0].found.positive_limit : motors[0].found.negative_limit;
+  auto& found = motors[0].found;
+  for (auto [up, at_limit] : {std::pair(true, &found.positive_limit),
+                              {false, &found.negative_limit},
+                              {true, &found.positive_desired},
+                              {false, &found.negative_desired}}) {
+    auto& limit = *at_limit;
     for (const char* line : {"J+", "J=100", "J:50", "J-", "J=0", "J:-50"}) {
       limit = true;
       ASSERT_EQ(host(line), "") << line;

@@ -351,6 +351,7 @@ TEST_F(Homing, SensorsOfIxx95) {
   for (const Sensor& s : {Sensor{"8 bits", 0x080000, 0xABCDEF, 0, 0xEF},
                           {"24 bits", 0x180000, 0xFFFFFE, 0, 16777214},
                           {"24 signed", 0x980000, 0xFFFFFE, 0, -2},
+                          {"25 bits", 0x190000, 1, 0xFFFFFF, 16777217},
                           {"30 bits", 0x1E0000, 1, 0xFFFFC1, 16777217},
                           {"30 signed", 0x9E0000, 1, 0x3F, -16777215},
                           {"X", 0x4C0000, 0xFFF, 0, 4095},

@@ -218,6 +218,23 @@ TEST_F(JogProfile, LongMoveAtASmallSpeedStaysWithinASixteenthOfACount) {
   EXPECT_FALSE(jog_is_moving(0));
 }
 
+// A stay is parts of 8192 ms and what is left: asked for in the second of three, begun behind them.
+TEST_F(JogProfile, AStopBeginsBehindTheLastWholePartOfAStay) {
+  const Limits l{1, 0, 10, 1};
+  set(l, 400);
+  increment(INT32_MAX / 2);  // 128 ms
+  ASSERT_TRUE(jog_to(0, units(30000)));
+  Followed result;
+  const Motion way = jog_model::to_target(l, {0, 0}, 30000);
+  follow(Motion({0, 0}), 0, way, 400, 105, result);
+  const double elapsed = 105 * step_ms() - 400, ixx92 = 12000;
+  ASSERT_TRUE(elapsed > 8192 + 20 && elapsed < 2 * 8192 && elapsed + ixx92 > 3 * 8192 + 20);
+  set(l, 12000);
+  ASSERT_TRUE(jog_stop(0));
+  follow(way, elapsed, jog_model::at_speed(l, way.at(elapsed + ixx92), 0), ixx92, 115, result);
+  EXPECT_FALSE(jog_is_moving(0));
+}
+
 // motion:4.1/3
 TEST_F(JogProfile, NoChangeTakesLongerThan2To23Ms) {
   const Limits l{1e-12, 0, 400, 20};
@@ -355,10 +372,13 @@ TEST_F(Jog, HoldStopsWhatAProgramMovesAndNothingElse) {
     for (int i = 0; i < 1000; ++i) step();
     coordinate_systems[0].held = true;
     coordinate_systems[0].increment = coordinate_systems[0].increment_target = 0;
-    step();
-    const double before = position();
-    for (int i = 0; i < 100; ++i) step();
-    EXPECT_NEAR(position() - before, by_program ? 0 : 100 * platform::kDefaultI10 / kTimeUnits * 20, kTolerance);
+    for (const int per_cent : {100, 50}) {
+      coordinate_systems[0].increment_command = platform::kDefaultI10 * per_cent / 100;
+      step();
+      const double before = position(), cycles = per_cent;
+      for (int i = 0; i < 100; ++i) step();
+      EXPECT_NEAR(position() - before, by_program ? 0 : cycles * platform::kDefaultI10 / kTimeUnits * 20, kTolerance);
+    }
     coordinate_systems[0].held = false;
     increment(platform::kDefaultI10);
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/fake_hal.h"
 #include "testbench/unit/firmware_program/platform.h"
 
 extern "C" {
@@ -228,6 +229,16 @@ TEST_F(LiveWords, GlobalStatus) {
   EXPECT_EQ(host("M1=0 ???"), "000600000800") << "what stays can be cleared, bit by bit";
   EXPECT_EQ(host("WX$6,0 WY$6,0 ???"), "000400000800") << "the cause of the other is still there";
   EXPECT_EQ(host("WX$6,$FFFFFF ???"), "000400000800");
+}
+
+// Bits 23 and 16 of word 2 are of one product each.
+TEST_F(LiveWords, GlobalStatusTellsTheProduct) {
+  const std::pair<unsigned, std::string> products[] = {
+      {HAL_PRODUCT_ULTRALITE, "800800"}, {HAL_PRODUCT_UMAC, "10800"}, {HAL_PRODUCT_JPAN, "800"}, {0, "800"}};
+  for (const auto& [product, word] : products) {
+    fake_hal_set_strap(HAL_STRAP_PRODUCT, product);
+    EXPECT_EQ(host("RHY$6"), word) << product;
+  }
 }
 
 // firmware:5.4, firmware:5.5: what is calculated and waits counts as what executes does, and is shown as such.

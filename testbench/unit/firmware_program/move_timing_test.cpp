@@ -64,6 +64,10 @@ TEST_F(MoveTiming, FeedrateIsClippedToIsx98) {
   ASSERT_EQ(host("CLOSE I5198=10 OPEN ROT"), "");
   lines({"TA10 TS0 F100 X5"});
   EXPECT_EQ(run(), ticks_of(500.0 + 10.0));
+  platform::power_up();
+  ASSERT_EQ(host("I5198=10 DEF ROT 50 B0 OPEN ROT"), "");
+  lines({"TA10 TS0 F5 X5"});
+  EXPECT_EQ(run(), ticks_of(1000.0 + 10.0)) << "not raised to it";
 }
 
 TEST_F(MoveTiming, TimeUnitIsx90MakesItPerMinute) {

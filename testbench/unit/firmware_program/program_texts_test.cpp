@@ -113,6 +113,7 @@ TEST_F(ProgramTexts, CommandsAreExecutedWithoutAReply) {
 TEST_F(ProgramTexts, ReplyComesWhereTheStatementNamesThePort) {
   ASSERT_EQ(host("P1=3 P2=4"), "");
   EXPECT_EQ(once({"CMDP\"P1P2\""}), "3\r4\r") << "no handshake";
+  EXPECT_EQ(once({"CMDP\"size\""}), host("SIZE") + "\r") << "each letter is made a capital";
   ASSERT_EQ(host("I64=1"), "");
   EXPECT_EQ(once({"CMDP\"P1P2\""}),
             "\x02"

@@ -186,6 +186,7 @@ TEST_F(StopsOfMotors, CornersThatAreTooSharpDoNotBlend) {
       {"I5183=-0.5", "X1 Y1", -1},                    // not that sharp
       {"I5183=0.5", "X11 Y30", 0},                    // 72 degrees: cosine 0.32
       {"I5183=-0.5", "X0", 0},                        // 180 degrees
+      {"I5183=-1", "X0", -1},                         // no cosine is below that
       {"I5183=0.5 I5182=40 I5185=0.1", "X1 Y1", 40},  // dwells
       {"I5183=0.5 I5182=40 I5185=-0.1", "X1 Y1", 0},  // not at this corner
       {"I5183=0.5", "X1 Z1", 0},                      // Z counts, A does not

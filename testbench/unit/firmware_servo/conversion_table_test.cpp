@@ -78,6 +78,8 @@ TEST_F(ConversionTable, SoftwareTime) {
   EXPECT_EQ(once(0), -48);
   channel(100, true, 640 | kTurned, 320);
   EXPECT_EQ(once(0), 3200) << "turned round";
+  channel(100, false, kTurned, 0x400000);
+  EXPECT_EQ(once(0), 3200) << "at once";
   channel(100, false, 0, 0);
   EXPECT_EQ(once(0), 3200);
   channel(100, false, 0x7FFFFF, 0x400000);
@@ -159,6 +161,8 @@ TEST_F(ConversionTable, ParallelWordsReachIntoTheNextAddress) {
   y(kFree + 1, 0xCDEF01);
   table("2810F0 00C00D");
   EXPECT_EQ(once(1), 0xAB0000 >> 13 | 0x800) << "the last of 12 bits is the first of the next word";
+  table("2810F0 002017");
+  EXPECT_EQ(once(1), 3) << "the last bit and the first of the next word";
   table("2810F0 00801C");
   EXPECT_EQ(once(1), 0xF0) << "8 bits from bit 4 of the next word";
   x(kFree, 0x654321);
@@ -167,6 +171,10 @@ TEST_F(ConversionTable, ParallelWordsReachIntoTheNextAddress) {
   EXPECT_EQ(signed_result(4), 0x432) << "of X, for $7 too";
   table("2810F0 001080");
   EXPECT_EQ(once(1), 0) << "bits that are not there";
+  table("2810F0 018000");
+  EXPECT_NE(once(1), 0);
+  table("2810F0 019000");
+  EXPECT_EQ(once(1), 0) << "25 bits are more than a result has";
 }
 
 TEST_F(ConversionTable, ALimitedStepCatchesUp) {
@@ -346,6 +354,9 @@ TEST_F(ConversionTable, SumsAndDifferences) {
   EXPECT_EQ(signed_result(7), 107);
   conversion_table_servo();
   EXPECT_EQ(signed_result(7), 214) << "integrated";
+  y(kFree, 0x7FFFFF - 7);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(7), hal_signed(214 + 0x7FFFFF)) << "the sum wraps as its word does";
   x(kTable + 19, 55);
   conversion_table_servo();
   EXPECT_EQ(signed_result(8), -55);
@@ -410,6 +421,9 @@ TEST_F(ConversionTable, AnEntryThatIsCutOffIsNone) {
   EXPECT_EQ(signed_result(190), 96);
   EXPECT_EQ(signed_result(191), 9);
   EXPECT_EQ(signed_result(192), 9) << "what is behind the table";
+  c_.line("I8190=$2810F0 I8191=$018000");
+  y(kFree, 7);
+  EXPECT_EQ(once(191), 7) << "the last line is the table's";
 }
 
 TEST_F(ConversionTable, OtherLinesDoNotDisturbAnEntry) {

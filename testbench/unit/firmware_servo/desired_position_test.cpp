@@ -270,8 +270,10 @@ TEST_F(DesiredPosition, ALoopIsClosedWhereTheMotorIsInSpiteOfTables) {
   EXPECT_EQ(motors[0].desired_step, 0);
 }
 
-// motion:1.4/4: two tables of one target.
+// motion:1.4/4: three tables of one target.
 TEST_F(DesiredPosition, TablesOfOneTargetAddUp) {
+  ASSERT_EQ(c_.line("#3 DEFINE COMP 2,#3,#1,1000"), "");
+  ASSERT_EQ(c_.line("64 0"), "");
   ASSERT_EQ(c_.line("#2 DEFINE COMP 2,#1D,#1,2000"), "");
   ASSERT_EQ(c_.line("32 32"), "");
   ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
@@ -279,9 +281,10 @@ TEST_F(DesiredPosition, TablesOfOneTargetAddUp) {
   c_.line("I51=1");
   close();
   desired(250, 1);
-  EXPECT_NEAR(desired(0), 10, 0.005);
-  EXPECT_NEAR(desired(1000), 1010 + 10 * 2 / 1000.0, 0.005) << "the other by where motor 1 was, 10 counts";
-  EXPECT_NEAR(desired(1000), 1010 + 2, 0.005);
+  motors[2].actual = 500 * kCount;
+  EXPECT_NEAR(desired(0), 14, 0.005);
+  EXPECT_NEAR(desired(1000), 1014 + 14 * 2 / 1000.0, 0.005) << "that of motor 1 by where it was, 14 counts";
+  EXPECT_NEAR(desired(1000), 1014 + 2, 0.005);
 }
 
 // Entries are of the target's counts, the span of the source's; Ixx08 of either may change.

@@ -58,16 +58,18 @@ TEST_F(LoopWords, TheWordOfThePidHasAnEnd) {
   EXPECT_EQ(c_.line("RX$AE"), "-8388607");
 }
 
-// A counter that is cleared is no movement: in the interrupt after that and in the next.
+// A counter that is cleared is neither movement nor velocity: in the interrupt after that and in the next.
 TEST_F(LoopWords, MovementThatIsForgotten) {
   close(0, 0);
   position_loop_forget_movement(0);
   const std::int64_t before = motors[0].actual;
   at(1000, 1000);
   position_loop_servo(0);
+  EXPECT_EQ(motors[0].output, 0);
   at(1100, 1100);
   position_loop_servo(0);
   EXPECT_EQ(motors[0].actual, before);
+  EXPECT_EQ(motors[0].output, 0);
   at(1132, 1132);
   position_loop_servo(0);
   EXPECT_EQ(motors[0].actual - before, 32 * 96);

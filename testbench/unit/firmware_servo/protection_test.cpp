@@ -317,7 +317,10 @@ TEST_F(Protection, SignalsOfTheSelectedSystem) {
   c_.line("I211=160");
   protection_pass();
   EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_EROR);
-  c_.line("&2");
+  c_.line("I200=0");
+  protection_pass();
+  EXPECT_EQ(fake_hal_signals() & HAL_SIGNAL_EROR, 0u) << "no more activated: nobody is to wait for it";
+  c_.line("I200=1 &2");
   protection_pass();
   EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), 0u);
 }

@@ -96,6 +96,23 @@ TEST_F(ChannelDecodeTest, ErrorOfEachQuadratureModeCountsNothing) {
   }
 }
 
+// Standing still, single steps and the turn between both directions.
+TEST_F(ChannelDecodeTest, LegalStepsRaiseNoErrorInAnyQuadratureMode) {
+  for (const auto mode : {regs::decode::kX1Cw, regs::decode::kX2Cw, regs::decode::kX4Cw, regs::decode::kX1Ccw,
+                          regs::decode::kX2Ccw, regs::decode::kX4Ccw}) {
+    control(1, decode_mode(mode));
+    rig_.ticks(kHold);
+    clear_error();
+    for (const bool up : {true, false}) {
+      for (int quarter = 0; quarter < 5; ++quarter) {
+        EXPECT_FALSE(status(1, status_bit::kEncoderError)) << "mode " << mode << " before quarter " << quarter;
+        step(1, up);
+      }
+    }
+    EXPECT_FALSE(status(1, status_bit::kEncoderError)) << "mode " << mode;
+  }
+}
+
 // A code that is none is an error for as long as it stands: cleared, the bit is set again by the next SCLK, and a clear
 // at the edge of an SCLK, one of the four edges of its period, clears nothing. A jump over one or two codes is an error
 // once.

@@ -12,9 +12,10 @@ from unittest import mock
 TOOLS = pathlib.Path(__file__).resolve().parents[3] / "tools"
 sys.path[:0] = [str(TOOLS / "mutate"), str(TOOLS)]
 try:
+    import clang  # noqa: F401
     import pyslang  # noqa: F401
-except ImportError:
-    print("skipped: pyslang is not installed (./dev setup)")
+except ImportError as missing:
+    print(f"skipped: {missing.name} is not installed (./dev setup)")
     sys.exit(77)
 
 import equal  # noqa: E402
@@ -197,7 +198,7 @@ class Proofs(unittest.TestCase):
 class Fresh(unittest.TestCase):
     def fresh(self, head, **options):
         judge = mock.Mock(module=mock.Mock(), **{"inputs.return_value": "x"})
-        judge.module.name = "m"
+        judge.module.kind, judge.module.name = "rtl", "m"
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
             records.write(records.path_of("rtl", "m", None), head, [{"number": 1}])
             return session.Session(judge, mock.Mock(**{"part": None, "all": False, "count": None, "seed": 1,
@@ -232,13 +233,20 @@ class Reports(unittest.TestCase):
     def problems(self, row, given, head=None):
         return report.problems_of({("rtl", "m"): ([{**self.HEAD, **(head or {})}], [{**self.ROW, **row}])}, given)
 
-    def test_a_survivor_needs_its_reason(self):
+    def open(self, row, given):
+        return report.open_of({("rtl", "m"): ([self.HEAD], [{**self.ROW, **row}])}, given)
+
+    def test_a_survivor_without_its_reason_is_open(self):
         key = records.key(self.ROW)
-        self.assertIn("survivor without a reason", self.problems({}, {})[0])
+        self.assertIn("survivor without a reason", self.open({}, {})[0])
+        self.assertEqual(self.open({}, {key: "it is so"}), [])
         self.assertEqual(self.problems({}, {key: "it is so"}), [])
 
     def test_what_lock_step_alone_kills_is_a_survivor_too(self):
-        self.assertIn("survivor without a reason", self.problems({"status": "killed", "stage": "slip"}, {})[0])
+        self.assertIn("survivor without a reason", self.open({"status": "killed", "stage": "slip"}, {})[0])
+
+    def test_more_than_a_twentieth_outside_is_open(self):
+        self.assertIn("outside the score", self.open({"status": "outside", "stage": "tests"}, {})[0])
 
     def test_a_reason_for_a_dead_mutant_is_a_problem(self):
         key = records.key(self.ROW)
@@ -273,7 +281,7 @@ class Reports(unittest.TestCase):
 
 class Names(unittest.TestCase):
     def test_unknown_names_say_what_there_is(self):
-        with self.assertRaisesRegex(plan.Unknown, "no 'verilog' is mutated; there is: rtl"):
+        with self.assertRaisesRegex(plan.Unknown, "no 'verilog' is mutated; there is: .*rtl"):
             plan.choose("verilog", [])
         with self.assertRaisesRegex(plan.Unknown, "no module pic_8260; there is: .*pic_8259"):
             plan.choose("rtl", ["pic_8259", "pic_8260"])

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Runs the commands of docs/tour.md in the tree: statuses as their comments say, and each line that the page quotes is
+"""Runs the commands of a page of docs in the tree: statuses as their comments say; each line that the page quotes is
 printed, at whatever time. Left out: programs with a window.
-usage: tour_acceptance.py BRICK CASE"""
+usage: page_acceptance.py BRICK CASE"""
 import os
 import pathlib
 import re
@@ -30,12 +30,10 @@ def commands(block):
         yield text, int(status[1]) if status else 0
 
 
-def tour():
+def play(page, least_commands, least_quotes):
     os.environ["PATH"] = f"{pathlib.Path(command.BRICK).resolve().parent}:{os.environ['PATH']}"
-    if shutil.which("ccache"):
-        os.environ["MAKEFLAGS"] = r"-- CC=ccache\ riscv64-unknown-elf-gcc"
     printed, quoted, ran = "", 0, 0
-    for kind, block in re.findall(r"^```(\w*)\n(.*?)^```$", (REPOSITORY / "docs/tour.md").read_text(), re.M | re.S):
+    for kind, block in re.findall(r"^```(\w*)\n(.*?)^```$", (REPOSITORY / page).read_text(), re.M | re.S):
         if kind != "sh":
             for line in map(without_time, block.splitlines()):
                 check(line in map(without_time, printed.splitlines()), f"the page quotes `{line}`; printed: {printed}")
@@ -47,11 +45,21 @@ def tour():
                 continue
             r = subprocess.run(["bash", "-c", text], cwd=REPOSITORY, capture_output=True, text=True)
             check(r.returncode == status, f"{text}: exit {r.returncode}, expected {status}: {r.stdout}{r.stderr}")
-            printed += r.stdout
+            printed += r.stdout + r.stderr
             ran += 1
-    check(ran >= 8 and quoted >= 6, f"{ran} commands, {quoted} lines quoted")
+    check(ran >= least_commands and quoted >= least_quotes, f"{ran} commands, {quoted} lines quoted")
+
+
+def tour():
+    if shutil.which("ccache"):
+        os.environ["MAKEFLAGS"] = r"-- CC=ccache\ riscv64-unknown-elf-gcc"
+    play("docs/tour.md", 8, 6)
     made = REPOSITORY / "build/tour"
     check((made / "bug.fst").stat().st_size > 1000 and (made / "seeds/report.html").exists(), "waveform and page")
+
+
+def faq():
+    play("docs/faq.md", 4, 5)
 
 
 globals()[command.CASE]()

@@ -1,0 +1,168 @@
+// Moves that wait behind Q, `/` or S in segments, when the motors are somewhere else at the start that follows
+// (motion:7.1/8): to absolute places, by distances, along arcs, by kinematic programs; not faster than F.
+#include "testbench/unit/firmware_paths/spline_path.h"
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+namespace {
+
+using namespace moving_motors;
+using spline_path::Spline;
+
+constexpr double kPi = 3.14159265358979323846;
+
+class WaitingMoves : public MovingMotors {
+ protected:
+  static void begin(const Lines& definitions) {
+    platform::power_up();
+    fit(definitions);
+    ASSERT_EQ(host("I5113=5 I5190=1000"), "");
+  }
+  // 1000 counts a unit, as the definitions have it; X is P10 off as the forward program sees it.
+  static void kinematic(const Lines& definitions) {
+    for (unsigned i = 0; i < definitions.size(); ++i)
+      ASSERT_EQ(host("&1#" + std::to_string(i + 1) + "->" + definitions[i]), "");
+    for (const char* line : {"&1OPEN FORWARD CLEAR", "Q7=P1/1000+P10 Q8=P2/1000 Q9=P3/1000", "CLOSE",
+                             "&1OPEN INVERSE CLEAR", "P1=Q7*1000 P2=Q8*1000 P3=Q9*1000", "CLOSE", "I5150=1 P10=0"})
+      ASSERT_EQ(host(line), "");
+  }
+  // A line at 10 a s to X1, then `lines`; stopped behind the first.
+  static void stop(Lines lines) {
+    lines.insert(lines.begin(), "F10 TA20 TS0 X1");
+    store(lines);
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(ticks_of(60));
+    ASSERT_EQ(host("&1Q"), "");
+    platform::servo_ticks(ticks_of(200));
+    ASSERT_FALSE(run_is_running(0));
+    ASSERT_EQ(motors[0].trajectory, 1000 * 3072);
+  }
+  // All of it, at no more than `fastest` counts a ms.
+  static void go_on(double fastest) {
+    double before[] = {at(1), at(2), at(3)};
+    run(
+        [&](double) {
+          double square = 0;
+          for (unsigned i = 0; i < 3; ++i) {
+            square += std::pow(at(i + 1) - before[i], 2);
+            before[i] = at(i + 1);
+          }
+          ASSERT_LE(std::sqrt(square), fastest * kTickMs * 1.002 + 0.01);
+        },
+        "&1R");
+  }
+  static void expect_at(const std::vector<double>& places) {
+    for (unsigned i = 0; i < places.size(); ++i) EXPECT_EQ(motors[i].trajectory, std::llround(places[i] * kUnit)) << i;
+  }
+};
+
+// Home where it stands: an axis goes to its absolute place from there, or by its distance; one that no line names stays
+// at the place that has another name now.
+TEST_F(WaitingMoves, GoToAbsolutePlacesAndByDistances) {
+  const struct {
+    Lines lines;
+    std::vector<double> ends;
+  } programs[] = {{{"X3", "X6"}, {6000, 0}},
+                  {{"INC X2", "X3"}, {5000, 0}},
+                  {{"INC X2", "ABS X6"}, {6000, 0}},
+                  {{"Y2", "Y4"}, {0, 2000}},
+                  {{"Y2", "X2 Y4"}, {2000, 2000}},
+                  {{"INC(Y) X3 Y2", "X1"}, {1000, 1000}},
+                  {{"INC X2 ABS Y5", "X4"}, {4000, 2500}},
+                  {{"DELAY50", "X3"}, {3000, 0}},
+                  {{"X1", "Y4"}, {1000, 2000}}};
+  for (const auto& p : programs) {
+    SCOPED_TRACE(p.lines.front() + " " + p.lines.back());
+    begin({"1000X", "500Y"});
+    stop(p.lines);
+    ASSERT_EQ(host("#1HMZ#2HMZ"), "");
+    platform::servo_ticks(5);
+    go_on(10);
+    expect_at(p.ends);
+  }
+}
+
+// The way that F counts is longer: it takes as long as that asks for. TM is kept.
+TEST_F(WaitingMoves, TakeTheTimeOfTheirWay) {
+  for (const bool by_time : {false, true}) {
+    begin({"1000X"});
+    stop({by_time ? "TM500 X6" : "X6"});
+    ASSERT_EQ(host("#1HMZ"), "");
+    platform::servo_ticks(5);
+    const double time = by_time ? 500 : 600;
+    const Spline x([&](double t) { return 6000 * (risen(t, 20, 0) - risen(t - time, 20, 0)) / time; }, time + 20, 5);
+    run([&](double t) { ASSERT_NEAR(at(1), x.at(t), 5 / kUnit) << t; }, "&1R");
+    expect_at({6000});
+  }
+}
+
+// The arc keeps its shape, in its plane (X goes to Z about -Y); what its end is beside that goes evenly.
+TEST_F(WaitingMoves, ArcsEndAtTheirEnds) {
+  for (const char* arc :
+       {"NORMAL J-1 CIRCLE1 X3 Z0 I1 K0", "NORMAL J-1 CIRCLE1 X3 R1", "NORMAL J-1 CIRCLE1 X3 Z0 R1"}) {
+    for (const bool by_program : {false, true}) {
+      SCOPED_TRACE(std::string(arc) + (by_program ? " I" : ""));
+      begin({"1000X", "1000Y", "1000Z"});
+      if (by_program) kinematic({"I", "1000Y", "I"});
+      stop({arc, "LINEAR X4"});
+      ASSERT_EQ(host("#1HMZ"), "");
+      platform::servo_ticks(5);
+      const double turn = std::hypot(kPi, 1) * 100, line = 100;  // ms, as a helix that climbs 1
+      const auto made = [](double t, double time) { return (risen(t, 20, 0) - risen(t - time, 20, 0)) / time; };
+      const auto x = [&](double t) {
+        return 1000 * (1 - std::cos(kPi * made(t, turn)) + made(t, turn) + made(t - turn, line));
+      };
+      const auto z = [&](double t) { return -1000 * std::sin(kPi * made(t, turn)); };
+      const Spline spline_x(x, turn + line + 20, 5), spline_z(z, turn + line + 20, 5);
+      run(
+          [&](double t) {
+            ASSERT_NEAR(at(1), spline_x.at(t), 4 / kUnit) << t;
+            ASSERT_NEAR(at(3), spline_z.at(t), 4 / kUnit) << t;
+          },
+          "&1R");
+      expect_at({4000, 0, 0});
+    }
+  }
+}
+
+// A matrix that turns by 90 degrees: what the program calls X is Y of the motors.
+TEST_F(WaitingMoves, GoToPlacesOfAMatrix) {
+  for (const bool absolute : {true, false}) {
+    begin({"1000X", "1000Y"});
+    ASSERT_EQ(host("DELETE GATHER"), "");
+    ASSERT_EQ(host("DEFINE TBUF 1"), "");
+    ASSERT_EQ(host("Q1=0 Q2=1 Q3=0 Q4=-1 Q5=0 Q6=0 Q7=0 Q8=0 Q9=1"), "");
+    stop({std::string("TSEL1 AROT1 ") + (absolute ? "ABS X3 Y-1" : "INC X3 Y0"), "Y-2"});
+    ASSERT_EQ(host("#2HMZ"), "");
+    motors[1].trajectory = motors[1].of_system = 500 * 3072;
+    platform::servo_ticks(5);
+    ASSERT_EQ(host("&1R"), "");
+    platform::servo_ticks(ticks_of(1500));
+    expect_at(absolute ? std::vector<double>{2000, 3000} : std::vector<double>{3000, 3500});
+  }
+}
+
+// The forward program has an error of its own, 0.4: absolute places are places all the same, arcs too.
+TEST_F(WaitingMoves, GoToTheirPlacesThroughAForwardProgramThatErrs) {
+  const struct {
+    Lines lines;
+    std::vector<double> ends;
+  } programs[] = {{{"X3", "X8"}, {8000, 0}},
+                  {{"INC X2", "X5"}, {8400, 0}},
+                  {{"INC X2", "ABS X8"}, {8000, 0}},
+                  {{"CIRCLE1 X3 Y0 R1", "LINEAR X8 Y1"}, {8000, 1000}},
+                  {{"CIRCLE2 X3 Y2 I0 J2", "LINEAR X8 Y1"}, {8000, 1000}}};
+  for (const auto& p : programs) {
+    SCOPED_TRACE(p.lines.front() + " " + p.lines.back());
+    begin({"1000X", "1000Y"});
+    kinematic({"I", "I"});
+    stop(p.lines);
+    ASSERT_EQ(host("P10=0.4"), "");
+    ASSERT_EQ(host("&1R"), "");
+    platform::servo_ticks(ticks_of(3000));
+    ASSERT_FALSE(run_is_running(0));
+    EXPECT_EQ(cs().error, RUN_TIME_NONE);
+    for (unsigned i = 0; i < 2; ++i) EXPECT_NEAR(at(i + 1), p.ends[i], 2 / kUnit);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""The mutation tool on a small C file: the places that its parser finds; the compiled text obeys the number."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+TOOLS = pathlib.Path(__file__).resolve().parents[3] / "tools"
+sys.path[:0] = [str(TOOLS / "mutate"), str(TOOLS)]
+try:
+    import clang  # noqa: F401
+    import pyslang  # noqa: F401
+except ImportError as missing:
+    print(f"skipped: {missing.name} is not installed (./dev setup)")
+    sys.exit(77)
+
+import again  # noqa: E402
+import c_source  # noqa: E402
+import mutant  # noqa: E402
+import schemata  # noqa: E402
+
+import firmware  # noqa: E402
+
+FILE = b"""#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#define LIMIT 7u
+#define TWICE(x) ((x) * 2)
+enum kind { IDLE, BUSY, DONE };
+static const int table[3] = {1, 2, 3}; /* \xc2\xb5s: places are bytes */
+int32_t work(enum kind kind, uint32_t n, int32_t* out) {
+  static int calls = 4;
+  int32_t sum;
+  sum = TWICE(5);
+  if (out == NULL) return -1;
+  for (uint32_t i = 0; i < n; i++) sum += table[i];
+  while (n > LIMIT) n--;
+  switch (kind) {
+    case IDLE: sum = 1; break;
+    case BUSY: return true ? 'a' : 0x1F;
+    default: break;
+  }
+  *out = sum;
+  return sum * (1.5 > calls);
+}
+"""
+
+
+def found_in(folder):
+    file = pathlib.Path(folder) / "work.c"
+    file.write_bytes(FILE)
+    return mutant.mutants_of("work.c", FILE, c_source.places(file, ["-std=c11"]))
+
+
+class Places(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with tempfile.TemporaryDirectory() as folder:
+            cls.mutants = found_in(folder)
+
+    def changes(self, operator):
+        return [(m.line, m.change) for m in self.mutants if m.place.operator == operator]
+
+    def test_operators_and_comparisons(self):
+        self.assertEqual(self.changes("operator"), [
+            (12, "-1 => 1"), (13, "sum += table[i] => sum -= table[i]"), (14, "n-- => n++"),
+            (21, "sum * (1.5 > calls) => sum / (1.5 > calls)")])
+        self.assertEqual(self.changes("comparison"), [
+            (12, "out == NULL => out != NULL"), (13, "i < n => i <= n"), (13, "i < n => i >= n"),
+            (14, "n > LIMIT => n <= LIMIT"), (14, "n > LIMIT => n >= LIMIT"),
+            (21, "1.5 > calls => 1.5 <= calls"), (21, "1.5 > calls => 1.5 >= calls")])
+
+    def test_constants_but_none_that_is_fixed_before_it_runs(self):
+        self.assertEqual(self.changes("constant"), [
+            (12, "1 => 2"), (13, "0 => 1"), (14, "LIMIT => (LIMIT + 1)"), (16, "1 => 2"), (17, "true => false"),
+            (17, "'a' => ('a' + 1)"), (17, "0x1F => 0x20"), (21, "1.5 => (2.0 * 1.5)")])
+
+    def test_conditions_and_cases(self):
+        self.assertEqual(self.changes("condition"), [
+            (12, "out == NULL => 0"), (12, "out == NULL => 1"), (13, "i < n => 0"), (14, "n > LIMIT => 0"),
+            (17, "true => 0"), (17, "true => 1")])
+        self.assertEqual(self.changes("case"), [
+            (15, "kind => kind == BUSY ? ~kind : kind"), (15, "kind => kind == IDLE ? ~kind : kind")])
+
+    def test_statements_but_none_that_gives_a_variable_its_first_value(self):
+        self.assertEqual(self.changes("statement"), [
+            (13, "without sum += table[i];"), (14, "without n--;"), (16, "without break;"), (18, "without break;"),
+            (20, "without *out = sum;")])
+
+    def test_text_that_is_no_c_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "bad.c"
+            file.write_text("int f(void) { return }")
+            with self.assertRaisesRegex(ValueError, "Clang does not read it"):
+                c_source.places(file, [])
+
+
+class Texts(unittest.TestCase):
+    MAIN = """#include <stdio.h>
+#include <stdint.h>
+#include <stdlib.h>
+unsigned brick_mutant_number;
+unsigned char brick_mutant_reached[999];
+int32_t work(int kind, uint32_t n, int32_t* out);
+int main(int argc, char** argv) {
+  brick_mutant_number = (unsigned)atoi(argv[1]);
+  int32_t out = 0;
+  printf("%d", work(2, 2, &out));
+  printf(" %d", out);
+  for (unsigned i = 0; i < 999; i++)
+    if (brick_mutant_reached[i] != 0) printf(" %u", i);
+}
+"""
+
+    def test_the_number_chooses_and_what_is_reached_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            mutants, path = found_in(folder), pathlib.Path(folder)
+            (path / "all.c").write_bytes(schemata.write(FILE, mutants, schemata.C("work.c")))
+            (path / "main.c").write_text(self.MAIN)
+            subprocess.run(["cc", "-w", "-o", "all", "all.c", "main.c"], cwd=folder, check=True)
+
+            def said(number):
+                return subprocess.run(["./all", str(number)], cwd=folder, capture_output=True, text=True,
+                                      check=True).stdout.split()
+
+            def number(change):
+                return next(m.number for m in mutants if m.change == change)
+
+            # kind DONE, n = 2: 10 + 1 + 2; 1.5 is not above 4.
+            self.assertEqual(said(0)[:2], ["0", "13"])
+            self.assertEqual(said(number("sum += table[i] => sum -= table[i]"))[:2], ["0", "7"])
+            self.assertEqual(said(number("i < n => i <= n"))[:2], ["0", "16"])
+            self.assertEqual(said(number("1.5 > calls => 1.5 <= calls"))[:2], ["13", "13"])
+            self.assertEqual(said(number("without *out = sum;"))[:2], ["0", "0"])
+            self.assertEqual(said(number("out == NULL => 1")), ["-1", "0", *said(number("out == NULL => 1"))[2:]])
+            self.assertIn(str(number("i < n => i <= n")), said(0)[2:])
+            self.assertNotIn(str(number("without n--;")), said(0)[2:])
+
+
+class Judges(unittest.TestCase):
+    def test_quick_tests_come_first_and_those_only_that_come_to_it(self):
+        judge = mock.Mock(reached={5: [(900, "a", "A.slow"), (3, "b", "B.quick"), (1, "a", "A.quick")]})
+        self.assertEqual([(t.program, t.filter, ms) for t, ms in firmware.Judge.calls(judge, 5)],
+                         [("a", "A.quick", 1), ("b", "B.quick", 3), ("a", "A.slow", 900)])
+        self.assertEqual(list(firmware.Judge.calls(judge, 6)), [])
+
+    def test_the_command_of_another_file_takes_no_notes(self):
+        words = firmware.plain(["cc", "-MD", "-MT", "x.o", "-MF", "x.d", "-O1", "-o", "x.o", "-c", "x.c"], "y.c", "y.o")
+        self.assertEqual(words, ["cc", "-O1", "-o", "y.o", "-c", "y.c"])
+
+    def test_again_is_by_tests_that_have_a_name(self):
+        self.assertTrue(again.NAMED.match("unit_firmware_servo: Limits.Upper/3"))
+        self.assertFalse(again.NAMED.match("unit_firmware_servo: heap-buffer-overflow"))
+        self.assertFalse(again.NAMED.match("unit_firmware_servo: /work/a.c:3:4: runtime error: index 5"))
+
+
+if __name__ == "__main__":
+    unittest.main()
