@@ -289,6 +289,7 @@ void Machine::apply_partly() {
 void Machine::apply(TimeFs time) { impl_->apply_host_inputs(time); }
 PortAPins& Machine::port_a() { return impl_->inputs; }
 const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }
+BoardOutputs Machine::port_a_at_once() const { return impl_->board->port_a_at_once(); }
 TimeFs Machine::cpu_period() const {
   const CpuClock& clock = impl_->port_a.clock();
   return tick_to_fs(CpuClock::kTicksPerMultiplier) / clock.multiplier();

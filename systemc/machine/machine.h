@@ -104,6 +104,8 @@ class Machine : public sc_core::sc_module {
   void apply(TimeFs time);  // the same with the exact time, which that edge is the first not to be before
   void apply_partly();      // some lines of a move that is in doubt (systemc/core/aperture.h): outside all move later
   const BoardOutputs& outputs() const;
+  BoardOutputs port_a_at_once()
+      const;            // with what follows a pin of Port A without a clock, before the next edge shows it
   PortAPins& port_a();  // of a machine without firmware: the pins of its CPU's bus, which nobody else drives
   PciBridge* pci();     // between the host and these pins on boards with a PCI connector, else nullptr
 

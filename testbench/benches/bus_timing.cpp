@@ -138,7 +138,7 @@ class BusTimingBench {
             if (times > 0) {
               ++reached;
               if (ta) ++with_ta;
-            } else if (missing.empty() && needed(region, n, ta))
+            } else if (missing.empty() && needed(region, n, ws, write, ta))
               missing = fmt::format("; none for I52 = {}, {} wait states, {}{}", n - 1, ws, write ? "write" : "read",
                                     ta ? ", /TA" : "");
           }
@@ -148,11 +148,16 @@ class BusTimingBench {
                    fmt::format("{} of {} cells, {} with /TA, {} cycles{}", reached, cells, with_ta, cycles, missing));
   }
 
-  // Above I52 = 15, and with the pads of --skew, the RAM itself holds /TA for a clock or more (host-bus:2.5): no cycle
-  // need be without. Where the CPU looks at /TA late, at slow clocks with many wait states, a host's command of 240 ns
-  // may never reach so far: of the cells with /TA two in three must be reached.
-  bool needed(Region region, unsigned n, bool ta) const {
-    return region != Region::kDpram || (!ta && n <= 16 && !b_.machine.skew().on());
+  // Where the CPU looks at /TA late enough for the RAM alone (host-bus:6.9/8) no cycle need be with it; sooner, none
+  // need be without. Where it looks late, at slow clocks with many wait states, a host's command of 240 ns may never
+  // reach so far: of the cells with /TA two in three must be reached.
+  bool needed(Region region, unsigned n, unsigned ws, bool write, bool ta) const {
+    if (region != Region::kDpram) return true;
+    const PinSkew& skew = b_.machine.skew();
+    const TimeFs pads = skew.on() ? skew.of_strobe(write) + PinSkew::kOutput : 0;
+    const TimeFs ready = isa::ns(write ? 27 : 35) + pads;
+    const unsigned quarters = 4 * ws + (write ? ws <= 3 ? 0 : -2 : 1);  // rows 102, 116
+    return !ta && PortATiming::quarters(quarters - 1, n) - 2 * kFsPerNs >= ready;
   }
   unsigned multipliers() const { return b_.machine.skew().on() ? kSkewedMultipliers : BusTraffic::kMultipliers; }
 

@@ -32,6 +32,7 @@ constexpr unsigned kIoReads = 2 * 5 * kN, kIoWrites = kIoReads, kIo = kIoReads +
 constexpr unsigned kWideReads = 2 * kN, kWideWrites = kWideReads, kWide = kWideReads + kWideWrites;
 constexpr unsigned kNobodys = 3 * kN, kNarrowReads = 3 * kN, kNarrowWrites = 3 * kN;
 constexpr unsigned kNarrow = kNobodys + kNarrowReads + kNarrowWrites, kAll = kIo + kWide + kNarrow;
+constexpr unsigned kRam = kWide + kNarrowReads + kNarrowWrites;  // IOCHRDY is low at the start of each
 constexpr unsigned kAnswered = kIoReads + kWideReads + kNarrowReads;
 
 // The CPU reads the host's word in this time: a hundred of its accesses of 44 clocks at most, every second a read.
@@ -52,9 +53,9 @@ constexpr Activity kActivity[] = {
     {IsaChecker::kT5Off, kAnswered},
     {IsaChecker::kT6, kIoWrites + kWideWrites + kNarrowWrites, true},
     {IsaChecker::kT7, kIoWrites, true},
-    {IsaChecker::kT8, 4 * kMet},
-    {IsaChecker::kT9, 4 * kMet, true},
-    {IsaChecker::kT10, 4 * kMet},
+    {IsaChecker::kT8, kRam},
+    {IsaChecker::kT9, kRam, true},
+    {IsaChecker::kT10, kRam},
     {IsaChecker::kT11, kAll, true},
     {IsaChecker::kT12, kWide + kNobodys, true},
     {IsaChecker::kT13, kWide, true},

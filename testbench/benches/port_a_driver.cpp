@@ -47,7 +47,7 @@ PortADriver::PortADriver(Machine& machine, std::uint64_t seed)
   shown_.emplace_back(machine.now(), machine.outputs());
   others_ = machine.on_outputs;
   machine_.on_outputs = [this](Tick tick, const BoardOutputs& before, const BoardOutputs& after) {
-    if (before.get(pin::kPaDataOe) != 0) driving_until_ = tick - 1;
+    drive_.edge(tick, after);
     shown_.emplace_back(tick, after);
     if (shown_.size() > kShown) shown_.pop_front();
     if (others_) others_(tick, before, after);
@@ -66,6 +66,7 @@ void PortADriver::run_to(Tick tick) {
     board_to(wires_.next());
     const TimeFs time = wires_.take(machine_.port_a()).time;
     machine_.apply();
+    drive_.lines(machine_.now(), machine_.port_a(), machine_.port_a_at_once());
     if (machine_.signals().traced()) show(time);
   }
   board_to(tick);
@@ -118,17 +119,15 @@ bool PortADriver::acknowledged(TimeFs time) {
   return at_cpu(time, output_delay()).get(pin::kPaTaN) == 0 && at_cpu(time, 0).get(pin::kPaTaN) == 0;
 }
 
-bool PortADriver::foreign(const Place& place, bool write, std::uint32_t data) {
-  const TimeFs own = own_read_end_, start = free_at_;
-  const PortALimits l = port_a_limits(i52_, place.wait_states, write);
-  cycle(place, write, data);
-  own_read_end_ = own;
-  const TimeFs fall = start + l.setup, last_own = own + PinSkew::kMost + tick_to_fs(1);
-  const TimeFs driven = tick_to_fs(driving_until_);
-  return !write && driven > fall && driven > last_own;
+void PortADriver::foreign(const Place& place, bool write, std::uint32_t data) {
+  cycle(place, PortADrive::kOther, write, data);
 }
 
-std::uint32_t PortADriver::cycle(const Place& place, bool write, std::uint32_t data) {
+PortADrive::Cycle PortADriver::own(const Place& place) {
+  return place.on_chip ? PortADrive::kOther : place.aa == 4 ? PortADrive::kRam : PortADrive::kRegisters;
+}
+
+std::uint32_t PortADriver::cycle(const Place& place, PortADrive::Cycle of, bool write, std::uint32_t data) {
   const PortALimits l = port_a_limits(i52_, place.wait_states, write);
   const TimeFs start = free_at_, fall = start + l.setup;
   ++phases_[write][static_cast<std::size_t>((fall - tick_to_fs(fs_to_tick_floor(fall) / kTicksPerRef * kTicksPerRef)) *
@@ -139,6 +138,7 @@ std::uint32_t PortADriver::cycle(const Place& place, bool write, std::uint32_t d
     p.pa_aa = place.aa;
     p.pa_int = place.on_chip;
   });
+  drive_.cycle(of, write);
   move(fall, [&](PortAPins& p) { (write ? p.pa_wr_n : p.pa_rd_n) = false; });
   if (write) move(fall + l.data, [&](PortAPins& p) { p.pa_wdata = data; });
   TimeFs rise = fall + l.low;
@@ -155,15 +155,13 @@ std::uint32_t PortADriver::cycle(const Place& place, bool write, std::uint32_t d
     const TimeFs sample = rise - (l.low - l.sample);
     const BoardOutputs& shown = at_cpu(sample, place.on_chip ? 0 : output_delay());
     word = shown.get(pin::kPaData);
-    floating_ += place.aa != 1 && place.aa != 8 && !place.on_chip && shown.get(pin::kPaDataOe) == 0;
-    own_read_end_ = rise;
+    floating_ += of != PortADrive::kOther && shown.get(pin::kPaDataOe) == 0;
   }
   move(rise, [](PortAPins& p) { p.pa_rd_n = p.pa_wr_n = true; });
   if (write) move(rise + l.data_hold, [&](PortAPins& p) { p.pa_wdata = random() & 0xFFFFFF; });
   // Up to three wait states an idle clock follows, in which the lines stand; row 117 has it in it from two on.
   const bool idles = place.wait_states <= 3 && (write || place.wait_states == 1);
   free_at_ = rise + l.hold + (idles ? l.clock : 0);
-  if (machine_.outputs().get(pin::kPaDataOe) != 0) driving_until_ = machine_.now();
   // Nothing holds the lines until the next address; it comes at once, or this is what stands there.
   move(free_at_, [&](PortAPins& p) {
     p.pa_addr = random() & 0x7FFFF;

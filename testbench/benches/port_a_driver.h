@@ -14,6 +14,7 @@
 
 #include "systemc/cpu/port_a_wires.h"
 #include "systemc/machine/machine.h"
+#include "testbench/checkers/port_a_drive.h"
 
 namespace brick {
 
@@ -55,23 +56,23 @@ class PortADriver {
   // The next address is not shown before `time`; else cycles follow each other at once.
   void wait_until(TimeFs time) { free_at_ = std::max(free_at_, time); }
   TimeFs free_at() const { return free_at_; }
-  void write(const Place& place, std::uint32_t data) { cycle(place, true, data); }
-  std::uint32_t read(const Place& place) { return cycle(place, false, 0); }
-  // A cycle of another device, whose data are nobody's here. True: the board drove D in it, but for the end of a read
-  // of its own, which lets go as late as /RD comes to it.
-  bool foreign(const Place& place, bool write, std::uint32_t data);
-  void rest();  // the board stands at the end of the last cycle
+  void write(const Place& place, std::uint32_t data) { cycle(place, own(place), true, data); }
+  std::uint32_t read(const Place& place) { return cycle(place, own(place), false, 0); }
+  void foreign(const Place& place, bool write, std::uint32_t data);  // of another device, whose data are nobody's here
+  void rest();                                                       // the board stands at the end of the last cycle
   void at(Tick tick, std::function<void()> then) { then_at_ = tick, then_ = std::move(then); }  // on the way there
 
   std::uint32_t random() { return static_cast<std::uint32_t>(random_()); }
   const Aperture::Counts& moves() const { return aperture_.counts(); }
+  const PortADrive& drive() const { return drive_; }
   unsigned floating() const { return floating_; }    // reads whose sample came before the board drove the pins
   unsigned stretched() const { return stretched_; }  // clocks that /TA added
   unsigned least_phase(bool write) const;            // how often the rarest phase of that strobe was seen
   void forget_phases() { phases_ = {}; }
 
  private:
-  std::uint32_t cycle(const Place& place, bool write, std::uint32_t data);
+  std::uint32_t cycle(const Place& place, PortADrive::Cycle of, bool write, std::uint32_t data);
+  static PortADrive::Cycle own(const Place& place);
   void move(TimeFs time, const std::function<void(PortAPins&)>& edit);
   void run_to(Tick tick);
   void board_to(Tick tick);
@@ -83,10 +84,9 @@ class PortADriver {
   Machine& machine_;
   Aperture aperture_;
   PortAWires wires_;
-  PortAPins driven_;                                 // as the master drives the lines
-  TimeFs own_read_end_ = 0;                          // /RD of the last read that is not another device's
+  PortAPins driven_;  // as the master drives the lines
+  PortADrive drive_;
   decltype(Machine::on_outputs) others_;             // who else is told
-  Tick driving_until_ = 0;                           // the last edge that showed D driven
   std::deque<std::pair<Tick, BoardOutputs>> shown_;  // by the board, at these edges; oldest first
   std::mt19937_64 random_;
   unsigned i52_ = 7;

@@ -13,7 +13,7 @@ TimingBook::TimingBook(Machine& machine) : machine_(machine) {
   };
   pins_.on_cycle = [this](const PinCycle& c) { port_a_.cycle(c); };
   pins_.board_moved(machine.now_fs(), machine.outputs());
-  if (machine.skew().on()) pins_.set_pin_delay(PinSkew::kMost);
+  pins_.set_pin_delay(machine.skew().of_strobe(false));
   machine.attach_port_a_watch(&pins_);
   add(isa_.ledger());
   isa_.set_cpu_period([&machine] { return machine.cpu_period(); });

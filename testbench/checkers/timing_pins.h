@@ -51,8 +51,8 @@ class PinWatch final : public PortAWatch {
  public:
   std::function<void(const PinCycle&)> on_cycle;
 
-  // The board lets go of D with /RD, which comes to it so late at most (--skew).
-  void set_pin_delay(TimeFs most) { pin_delay_ = most; }
+  // The board lets go of D with /RD, which comes to it so late (--skew).
+  void set_pin_delay(TimeFs delay) { pin_delay_ = delay; }
 
   void cpu_moved(TimeFs time, const PortALevels& levels) override;
   void board_moved(TimeFs time, const BoardOutputs& board) override;

@@ -11,7 +11,7 @@ class Sweep {
   Sweep(Machine& machine, std::uint64_t seed) : machine_(machine), traffic_(machine, seed) {
     pins_.on_cycle = [this](const PinCycle& c) { judge_.cycle(c); };
     pins_.board_moved(machine.now_fs(), machine.outputs());
-    if (machine.skew().on()) pins_.set_pin_delay(PinSkew::kMost);
+    pins_.set_pin_delay(machine.skew().of_strobe(false));
     machine_.attach_port_a_watch(&pins_);
   }
   ~Sweep() { machine_.attach_port_a_watch(nullptr); }

@@ -57,9 +57,9 @@ constexpr std::size_t kFirstInput = pin::kAll.size(), kFirstCpu = kFirstInput + 
 
 // They take a reset, a collision of host and CPU in one word, or a card of its own.
 constexpr const char* kRare[] = {
-    "RESETDRV",         "5 V good",     "reset",           "control panel",  "host.wdo",        "watchdog.relay",
-    "watchdog.tripped", "watchdog.led", "dpram.busy_host", "dpram.busy_cpu", "clock.conflict",  "host.isa.iochrdy",
-    "ISA t8",           "ISA t9",       "ISA t10",         "ISA t16",        "ISA whole-cycle", "ISA room-in-tx"};
+    "RESETDRV",       "5 V good",         "reset",           "control panel",   "host.wdo",
+    "watchdog.relay", "watchdog.tripped", "watchdog.led",    "dpram.busy_host", "dpram.busy_cpu",
+    "clock.conflict", "ISA t16",          "ISA whole-cycle", "ISA room-in-tx"};
 
 // Rules that a region does not have. All others are evaluated in every region.
 struct NotInRegion {

@@ -18,8 +18,9 @@ struct Shows {
   bool driven = true, busy = false;
 };
 
-PinCycle read(const std::vector<Shows>& board, unsigned more_clocks = 0) {
+PinCycle read(const std::vector<Shows>& board, unsigned more_clocks = 0, TimeFs rd_late = 0) {
   PinWatch watch;
+  watch.set_pin_delay(rd_late);
   PinCycle cycle;
   watch.on_cycle = [&](const PinCycle& c) { cycle = c; };
   PortALevels levels;
@@ -69,6 +70,12 @@ TEST(PinWatch, TheBoardDrivesInsideReadStrobesOnly) {
   EXPECT_TRUE(read({{kLow + kNs, 5}}).drives_outside) << "for ever";
   EXPECT_TRUE(read({{kStart - 9 * kNs, 5}, {kStart - 8 * kNs, 5, false}, {kLow, 5}, {kHigh, 5, false}}).drives_outside)
       << "between cycles";
+}
+
+// /RD comes to the board 3 ns late: as much later may D end, and no more.
+TEST(PinWatch, ALatePinOfTheStrobeIsNoMoreThanThat) {
+  EXPECT_FALSE(read({{kLow, 5}, {kHigh + 3 * kNs, 5, false}}, 0, 3 * kNs).drives_outside);
+  EXPECT_TRUE(read({{kLow, 5}, {kHigh + 3 * kNs + 1, 5, false}}, 0, 3 * kNs).drives_outside);
 }
 
 TEST(PinWatch, ClocksThatTaAskedFor) {
