@@ -24,6 +24,7 @@
 #include "firmware/image/system_commands.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/kinematics.h"
@@ -92,6 +93,7 @@ const i_effect_t i_effects[I_FIELD_COUNT] = {
     [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
     [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,
     [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
+    [I_FIELD_VELOCITY_SAMPLES] = average_velocity_changed,
     [I_FIELD_COMPENSATION] = compensation_tables_changed,
     [I_FIELD_CONVERSION] = conversion_table_changed,
     [I_FIELD_MOTOR_SERVO] = motor_variables_changed,

@@ -47,6 +47,17 @@ void average_velocity_restart(uint32_t motor) {
   averages[motor].way = 0;
 }
 
+/* Samples of the old distance and of the new one are no way of sixteen, nor is what is left of a round. */
+void average_velocity_changed(uint32_t instance) {
+  (void)instance;
+  turn = 0;
+  for (uint32_t motor = 0; motor < MOTORS; ++motor) {
+    const uint32_t state = hal_mask_servo();
+    average_velocity_restart(motor);
+    hal_unmask(state);
+  }
+}
+
 int64_t average_velocity(uint32_t motor) {
   const uint32_t shift = (uint32_t)i_integer(I61_FILTER_SHIFT);
   const uint32_t state = hal_mask_servo();

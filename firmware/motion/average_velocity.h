@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 void average_velocity_initialize(void);                  /* start-up */
+void average_velocity_changed(uint32_t instance);        /* I60 was written */
 void average_velocity_servo(void);                       /* servo task, behind all motors */
 void average_velocity_shift(uint32_t motor, int64_t by); /* positions are counted from elsewhere. Servo task held off */
 void average_velocity_restart(uint32_t motor);           /* it is activated: it has not moved. Servo task held off */

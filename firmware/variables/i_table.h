@@ -52,6 +52,7 @@ typedef enum {
   I_FIELD_SEGMENTATION_TIME, /* one value for all systems of a Geo PMAC */
   I_FIELD_LOOKAHEAD_LENGTH,  /* the same */
   I_FIELD_CONVERSION,
+  I_FIELD_VELOCITY_SAMPLES,
   I_FIELD_COMPENSATION,
   I_FIELD_ADC_RING,
   I_FIELD_IC_MAX_PHASE,

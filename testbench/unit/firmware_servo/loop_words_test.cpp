@@ -187,6 +187,28 @@ TEST_F(LoopWords, VIsTheMeanOfSixteenSamples) {
   }
 }
 
+// motion:1.3/4: with another I60 the samples begin anew, in the middle of a round too: at an even speed the mean rises
+// to it and is never more.
+TEST_F(LoopWords, AnotherDistanceOfSamplesBeginsAnew) {
+  for (unsigned before : {15u, 3u, 0u}) {
+    for (unsigned after : {0u, 3u, 15u}) {
+      c_.line("I60=" + std::to_string(before) + " I61=8");
+      average_velocity_initialize();
+      c_.line("I100=0 I100=1");
+      std::int64_t most = 0;
+      for (unsigned n = 0; n < 600; ++n) {
+        if (n == 300) c_.line("I60=" + std::to_string(after));
+        motors[0].actual += 25600;
+        average_velocity_servo();
+        if (n < 300) continue;
+        most = std::max(most, average_velocity(0));
+        ASSERT_LE(average_velocity(0), 100 * (n - 299)) << before << ", " << after << ": more than it has moved since";
+      }
+      EXPECT_EQ(most, 25600 * 16 * (after + 1) / 256) << before << ", " << after;
+    }
+  }
+}
+
 TEST_F(LoopWords, TheVelocityOfABlockHasAnEnd) {
   c_.line("I60=0 I61=0");
   average_velocity_initialize();
