@@ -114,7 +114,7 @@ static bool hand_over(uint32_t motor, struct beginning* b) {
   j->next_begins = alone ? b->begins : INT64_MAX;
   j->ready = true;
   jogs_asked &= ~jog_bit(motor);
-  if (!alone) waiting |= jog_bit(motor);
+  waiting = alone ? waiting & ~jog_bit(motor) : waiting | jog_bit(motor);
   return true;
 }
 

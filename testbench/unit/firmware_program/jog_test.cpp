@@ -12,6 +12,7 @@ extern "C" {
 #include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
+extern volatile std::uint32_t jogs_asked;  // jog_state.h: motors whose request is not planned yet
 }
 
 namespace {
@@ -470,6 +471,55 @@ TEST_F(Jog, WhatHasBeenDroppedIsForgotten) {
   for (int i = 0; i < 2000 && jog_is_moving(0); ++i) highest = std::max(highest, step());
   EXPECT_LE(highest, 0);
   EXPECT_EQ(motors[0].trajectory, units(-1000));
+}
+
+// motion:5.5/1: one whose ramp has taken the place of a move that waited, and which has moved together with another
+// before, does not begin what that other waits for.
+TEST_F(Jog, ARampInPlaceOfAWaitingMoveBeginsNoOther) {
+  for (unsigned motor = 0; motor < 4; ++motor) {
+    ASSERT_EQ(platform::host("I" + std::to_string(motor + 1) + "00=1"), "");
+    motors[motor] = motors[0];
+    platform::set_i(100 * motor + 119, 1);
+    platform::set_i(100 * motor + 120, 0);
+    platform::set_i(100 * motor + 121, 0);
+    platform::set_i(100 * motor + 192, 1);
+  }
+  const auto rapid = [](unsigned motor, std::uint32_t together) {
+    EXPECT_TRUE(jog_rapid(motor, motors[motor].trajectory + units(100), 20, together));
+  };
+  const auto servo = [](unsigned count) {
+    for (unsigned i = 0; i < 4 * count; ++i) jog_servo(i % 4);
+  };
+  rapid(0, 0b0011);
+  rapid(1, 0b0011);
+  for (int i = 0; i < 200; ++i) {
+    servo(1);
+    platform::real_time();
+  }
+  ASSERT_FALSE(jog_is_moving(0) || jog_is_moving(1));
+  const std::int64_t stands = motors[1].trajectory;
+  unsigned stage = 0;
+  rapid(0, 0b0101);
+  rapid(2, 0b0101);
+  platform::real_time_in_slices([&] {
+    if (stage == 0 && jogs_asked == 0b0100) {  // the first waits for the third
+      EXPECT_TRUE(jog_stop_at(0, 1));
+      rapid(1, 0b1010);
+      stage = 1;
+    } else if (stage == 1 && jogs_asked == 0b0010) {  // its ramp is planned, and begins and ends
+      servo(5);
+      rapid(3, 0b1010);
+      stage = 2;
+    } else if (stage == 2 && jogs_asked == 0b1000) {  // the second waits for the fourth
+      servo(20);
+      EXPECT_EQ(motors[1].trajectory, stands);
+      stage = 3;
+    }
+  });
+  EXPECT_EQ(stage, 3u);
+  servo(20);
+  EXPECT_GT(motors[1].trajectory, stands);
+  EXPECT_EQ(motors[3].trajectory, motors[1].trajectory - stands);
 }
 
 }  // namespace
