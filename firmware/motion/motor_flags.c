@@ -74,5 +74,19 @@ static bool limit(uint32_t motor, uint32_t mask) {
   return word != 0 && (*word & mask) != 0u;
 }
 
+/* A register of an IC makes the CPU wait: both are bits of one word, usually. */
+bool motor_flags_stop(uint32_t motor, int direction) {
+  const struct flags* f = &flags[motor];
+  const volatile uint32_t *amplifier = f->amplifier, *limits = f->limits;
+  uint32_t word = 0;
+  if (amplifier != 0) {
+    word = *amplifier;
+    if (((word & SERVO_CHANNEL_STATUS_FAULT_MASK) != 0u) == f->fault_is_high) return true;
+  }
+  if (direction == 0 || limits == 0) return false;
+  if (limits != amplifier) word = *limits;
+  return (word & (direction > 0 ? SERVO_CHANNEL_STATUS_PLIM_MASK : SERVO_CHANNEL_STATUS_MLIM_MASK)) != 0u;
+}
+
 bool motor_flags_positive_limit(uint32_t motor) { return limit(motor, SERVO_CHANNEL_STATUS_PLIM_MASK); }
 bool motor_flags_negative_limit(uint32_t motor) { return limit(motor, SERVO_CHANNEL_STATUS_MLIM_MASK); }

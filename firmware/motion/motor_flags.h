@@ -13,6 +13,7 @@ void motor_flags_motor_changed(uint32_t motor); /* 1..32 */
 void motor_flags_enable(uint32_t motor, bool enabled); /* AENA, unless Ixx24 says that it is not used. Servo task held
                                                           off, or servo task */
 bool motor_flags_fault(uint32_t motor);                /* amplifier fault */
+bool motor_flags_stop(uint32_t motor, int direction);  /* fault, or the limit of that direction (+1, -1, 0: none) */
 bool motor_flags_positive_limit(uint32_t motor);       /* PLIM open */
 bool motor_flags_negative_limit(uint32_t motor);       /* MLIM open */
 

@@ -342,15 +342,26 @@ bool protection_is_asked_for(void) { return asked; }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */
 
+static __attribute__((noinline)) bool is_urgent_seldom(uint32_t motor, bool beyond) {
+  return (beyond && !jog_is_homing(motor)) || integral_trips(motor);
+}
+
 /* What the pass would act upon. A motor that stands in a limit is none of it. First what needs no call. */
 static bool is_urgent(uint32_t motor) {
-  const struct view view = look_now(motor);
-  const bool closed = view.loop == LOOP_CLOSED, up = goes(&view, 1), moves = up || goes(&view, -1);
-  if (closed && error_of(&view) > guards[motor].fatal_error) return true;
-  if (moves && (is_at_software_limit(motor, &view, up) || (closed && is_beyond_desired(motor, &view, up)))) return true;
-  if (motor_flags_fault(motor) || (moves && is_at_input(motor, up))) return true;
-  return ((overload_watched >> motor & 1u) != 0u && overload_is_too_much_now(motor)) ||
-         (closed && integral_trips(motor));
+  const struct motor* m = &motors[motor];
+  const struct guard* g = &guards[motor];
+  FIXED_IN_REGISTER(m);
+  FIXED_IN_REGISTER(g);
+  const bool closed = m->loop == LOOP_CLOSED;
+  const int64_t commanded = m->commanded, actual = m->actual;
+  const int32_t by = closed ? m->desired_step : m->velocity;
+  if (closed && magnitude(commanded - actual) > g->fatal_error) return true;
+  bool beyond = false;
+  if (by > 0) beyond = actual >= g->positive_limit || (closed && commanded > g->positive_desired);
+  if (by < 0) beyond = actual <= g->negative_limit || (closed && commanded < g->negative_desired);
+  if ((beyond || (closed && g->integral_trips)) && is_urgent_seldom(motor, beyond)) return true;
+  if ((overload_watched >> motor & 1u) != 0u && overload_is_too_much_now(motor)) return true;
+  return motor_flags_stop(motor, (by > 0) - (by < 0));
 }
 
 void protection_take_turn(void) {
@@ -359,13 +370,16 @@ void protection_take_turn(void) {
   protection_watched = foreground ? UINT32_MAX : urgent_watched;
 }
 
+static __attribute__((noinline)) void look_foreground(uint32_t motor) {
+  const struct motor* m = &motors[motor];
+  motors[motor].found.foreground_in_position =
+      m->loop == LOOP_CLOSED && is_in_position(motor, m->commanded - m->actual, m->desired_step);
+}
+
 void protection_look(uint32_t motor) {
   if ((urgent_watched >> motor & 1u) != 0u && protection_takes_turns() && is_urgent(motor)) {
     asked = true;
     hal_request_real_time();
   }
-  if (!foreground) return;
-  const struct motor* m = &motors[motor];
-  motors[motor].found.foreground_in_position =
-      m->loop == LOOP_CLOSED && is_in_position(motor, m->commanded - m->actual, m->desired_step);
+  if (foreground) look_foreground(motor);
 }

@@ -104,6 +104,11 @@ TEST_P(RareChecks, LimitsStopWhatMovesOn) {
     happens = [up] { flags(1, up ? kPositive : kNegative); };
     over = [] { flags(1, 0); };
     expect_in_time(1, begin, seen);
+    c_.line("I143=$78008");  // inputs of another channel
+    happens = [up] { flags(2, up ? kPositive : kNegative); };
+    over = [] { flags(2, 0); };
+    expect_in_time(1, begin, seen);
+    c_.line("I143=0");
     const std::string limit = up ? "I113" : "I114";
     const int here = up ? 1 : -1;
     happens = [this, limit, here] { c_.line(limit + "=" + std::to_string(std::lround(at(1)) - 20 * here)); };
@@ -129,6 +134,17 @@ TEST_P(RareChecks, NothingIsAskedForInVain) {
   const unsigned period = static_cast<unsigned>(GetParam()) + 1;
   servo(3 * period);
   EXPECT_NEAR(real_time(8 * period), 8, 1);
+}
+
+// motion:6.2/2: software limits do not count for a search for home.
+TEST_P(RareChecks, ASearchForHomeBeyondALimitAsksForNothing) {
+  close_all();
+  c_.line("I123=10 I111=0 I113=" + std::to_string(std::lround(at(1)) - 20));
+  c_.line("#1HM");
+  follow(270);
+  const unsigned period = static_cast<unsigned>(GetParam()) + 1;
+  EXPECT_NEAR(real_time(8 * period), 8, 1);
+  EXPECT_TRUE(motors[0].status.home_search);
 }
 
 // While SAVE runs nothing is looked at (motion:6), nor is it asked for.
