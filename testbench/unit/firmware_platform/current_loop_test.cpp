@@ -272,6 +272,27 @@ TEST_F(CurrentLoop, OverloadCountsCurrentsBeyondFullScale) {
   EXPECT_EQ(trips_after(), 6711u) << "(5000^2 - 3000^2) / 32768^2 = 0.0149 a servo interrupt";
 }
 
+// motion:6.3: Ixx57 < 0 counts the length of the vector, rounded downwards: one more than Ixx57 is 2^-15 each time.
+TEST_F(CurrentLoop, LinearOverloadCountsTheLengthOfTheVector) {
+  const struct {
+    int q, d;
+  } vectors[] = {{4000, 3000}, {-3000, 4000}, {16384, 16384}, {32767, 5}, {32767, 32767}, {-7, 31000}, {20000, 8000}};
+  for (const auto& v : vectors) {
+    const int length = static_cast<int>(std::sqrt(std::pow(v.q, 2) + std::pow(v.d, 2)));
+    set("I182=0 I177=" + std::to_string(v.d));
+    enable();
+    command(v.q);
+    for (const int least : {length - 1, length}) {
+      set("I157=-" + std::to_string(std::min(least, 32767)) + " I158=0");
+      set("I158=1");
+      const int more = length - std::min(least, 32767);  // of 2^15
+      int n = 0;
+      for (; n < 40000 && !overload_is_too_much(0); ++n) overload_servo(0);
+      EXPECT_EQ(n, more == 0 ? 40000 : 32768 / more + 1) << v.q << ", " << v.d;
+    }
+  }
+}
+
 // The sum is not below 0, so rest is not saved up, and not above twice Ixx58, so that it is forgotten in time. Outputs
 // are rounded to 16 bits.
 TEST_F(CurrentLoop, OverloadIsBetweenNothingAndTwiceItsMost) {
