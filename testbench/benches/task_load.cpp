@@ -295,7 +295,7 @@ void TaskLoad::abort(const std::string& name) {
 void TaskLoad::rapid() {
   host_.say({fmt::format("I8={}", kRareRealTime)});
   run_program(2);
-  own_times("RAPID", 180, FallLimits::kPhaseCycles, FallLimits::kServoCycles);
+  own_times("RAPID", 200, FallLimits::kPhaseCycles, FallLimits::kServoCycles);
   begin_together("RAPID");
   host_.expect("I8", std::to_string(kRareRealTime));
   host_.record();
