@@ -10,7 +10,7 @@
 enum { SAME_WAY = -20 }; /* 2^that of a move's way: less is what a forward program rounds, no other way */
 
 static bool is_another_way(const struct path_move* m, double by) {
-  double longest = m->is_arc ? m->circle.radius : 0.0;
+  double longest = 0.0;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
     if (math_absolute(m->delta[axis]) > longest) longest = math_absolute(m->delta[axis]);
   slice_pause();
@@ -59,7 +59,6 @@ static void judge_corner(uint32_t cs, uint32_t ahead) {
   path_direction(path_of(&paths[cs], ahead - 1u), 1.0, before);
   path_direction(m, 0.0, after);
   slice_pause();
-  m->dwells = true;
   m->sharp = corner_is_sharp(cs, before, after, &m->dwells);
   m->joins = !m->sharp;
 }

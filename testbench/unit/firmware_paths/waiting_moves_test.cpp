@@ -150,14 +150,11 @@ TEST_F(WaitingMoves, TurnTheWayFromWhereTheyAre) {
     const char* turn;
     Lines lines;
     double end;
-  } programs[] = {{"4000", {"A2.5"}, -1500},
-                  {"4000", {"A2.5", "A1"}, -3000},
-                  {"4000", {"A2.5", "INC A2"}, 500},
-                  {"4000", {"INC A1", "ABS A0.5"}, 500},
-                  {"-4000", {"A-0.5"}, -3500},
-                  {"-4000", {"A0.5"}, 500},
-                  {"-4000", {"A-0.5", "A1"}, -3000},
-                  {"-4000", {"A1.005", "A0.5"}, 4500},
+  } programs[] = {{"4000", {"A2.5"}, -1500},         {"4000", {"A2.5", "A1"}, -3000},
+                  {"4000", {"A2.5", "INC A2"}, 500}, {"4000", {"INC A1", "ABS A0.5"}, 500},
+                  {"4000", {"INC A3"}, 3000},
+                  {"-4000", {"A-0.5"}, -3500},       {"-4000", {"A0.5"}, 500},
+                  {"-4000", {"A-0.5", "A1"}, -3000}, {"-4000", {"A1.005", "A0.5"}, 4500},
                   {"0", {"A2.5", "A1"}, 1000}};
   for (const auto& p : programs) {
     SCOPED_TRACE(std::string(p.turn) + " " + p.lines.front() + " " + p.lines.back());
@@ -193,6 +190,14 @@ TEST_F(WaitingMoves, BlendByTheWaysThatTheyGo) {
   double worst = 0;
   run([&](double t) { worst = std::max(worst, std::abs(at(1) - x.at(t))); }, "&1R");
   EXPECT_LE(worst, 10 / kUnit);
+  expect_at({800});
+
+  begin({"1000X"});
+  ASSERT_EQ(host("I5183=-0.5 I5192=1"), "") << "nothing blends";
+  stop({"X0.5", "X0.8"});
+  ASSERT_EQ(host("#1HMZ"), "");
+  platform::servo_ticks(5);
+  EXPECT_NEAR(run([](double) {}, "&1R"), 50 + 30 + 2 * (20 + 10), 6);
   expect_at({800});
 }
 
