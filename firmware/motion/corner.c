@@ -14,6 +14,7 @@ static double cosine(const double before[AXIS_COUNT], const double after[AXIS_CO
     product += before[axis] * after[axis];
     slice_pause();
     first += before[axis] * before[axis];
+    slice_pause();
     second += after[axis] * after[axis];
     slice_pause();
   }

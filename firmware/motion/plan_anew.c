@@ -11,9 +11,10 @@ enum { SAME_WAY = -20 }; /* 2^that of a move's way: less is what a forward progr
 
 static bool is_another_way(const struct path_move* m, double by) {
   double longest = 0.0;
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     if (math_absolute(m->delta[axis]) > longest) longest = math_absolute(m->delta[axis]);
-  slice_pause();
+    slice_pause();
+  }
   return math_absolute(by) > math_scale(longest, SAME_WAY);
 }
 
@@ -25,6 +26,7 @@ static uint32_t shift_axis(uint32_t cs, uint32_t axis, double shift) {
   for (uint32_t i = 0; shift != 0.0 && i < paths[cs].count; i++) {
     struct path_move* m = path_of(&paths[cs], i);
     m->start[axis] += shift;
+    slice_pause();
     if (turns) m->circle.centre[axis - AXIS_X] += shift;
     slice_pause();
     if (((m->absolute >> axis) & 1u) == 0) {
@@ -34,10 +36,13 @@ static uint32_t shift_axis(uint32_t cs, uint32_t axis, double shift) {
     const double was = m->end[axis];
     if (axis <= AXIS_C) m->end[axis] = system_motors_turn(cs, axis, m->start[axis], m->told[axis]);
     const double by = m->end[axis] - was - shift;
+    slice_pause();
     if (is_another_way(m, by)) changed |= 1u << i;
+    slice_pause();
     m->delta[axis] += by;
     if (turns) m->circle.along[axis - AXIS_X] += by;
     shift = m->end[axis] - was;
+    slice_pause();
   }
   return changed;
 }
@@ -47,6 +52,7 @@ static void set_time(struct path_move* m) {
   double time;
   slice_pause();
   if (!(m->feedrate.unit > 0.0) || !plan_path_time(m, &time)) return;
+  slice_pause();
   const int64_t wanted = path_time(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS);
   path_set_time(m, wanted > least ? wanted : least);
 }
@@ -57,6 +63,7 @@ static void judge_corner(uint32_t cs, uint32_t ahead) {
   struct path_move* m = path_of(&paths[cs], ahead);
   if (!m->joins && !m->sharp) return;
   path_direction(path_of(&paths[cs], ahead - 1u), 1.0, before);
+  slice_pause();
   path_direction(m, 0.0, after);
   slice_pause();
   m->sharp = corner_is_sharp(cs, before, after, &m->dwells);

@@ -40,6 +40,7 @@ bool plan_feed_time(const struct feedrate* f, const double delta[AXIS_COUNT], do
     *time = other / (follows ? f->feed : f->alternate) * f->unit;
     return true;
   }
+  slice_pause();
   double length = axes == 1 ? single : math_square_root(square);
   slice_pause();
   *time = length / f->feed * f->unit;

@@ -100,9 +100,18 @@ double system_motors_turn(uint32_t cs, uint32_t axis, double from, double target
   for (uint32_t motor = 0, left = axis <= AXIS_C ? s->motors : 0u; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0 || maps[motor].count != 1u || maps[motor].axis[0] != axis) continue;
     if (i_variable_read(i_motor_real(motor + 1u, IXX27_ROLLOVER)) == 0.0) return target;
+    slice_pause();
     const double scale = math_absolute(axis_definitions[motor].scale[axis]); /* directions are those of the axis */
     slice_pause();
-    return rollover_target(motor, from * scale, target * scale, target < 0.0) / scale;
+    const double counts = from * scale;
+    slice_pause();
+    const double told = target * scale;
+    slice_pause();
+    const double turned = rollover_target(motor, counts, told, target < 0.0);
+    slice_pause();
+    const double place = turned / scale;
+    slice_pause();
+    return place;
   }
   return target;
 }
