@@ -10,24 +10,32 @@
 enum { SAMPLES = 16, LARGEST_SHIFT = 62 };
 
 static struct { int64_t at[SAMPLES], way; } averages[MOTORS];
-static uint32_t next, turn; /* the sample, and the first motor of the interrupt */
+static uint32_t next, turn, turns; /* the sample, the first motor of the interrupt, interrupts of the sample */
 
 void average_velocity_initialize(void) {
   __builtin_memset(averages, 0, sizeof averages);
   next = turn = 0;
 }
 
-void average_velocity_servo(void) {
-  const uint32_t turns = (uint32_t)i_integer(I60_FILTER_SAMPLE_SPACING) + 1u;
-  for (uint32_t motor = turn; motor < MOTORS; motor += turns) {
+static __attribute__((noinline)) void sample(uint32_t motor) {
+  for (; motor < MOTORS && motors_active >> motor != 0u; motor += turns) {
     if ((motors_active >> motor & 1u) == 0u) continue;
     const int64_t actual = motors[motor].actual;
     averages[motor].way = actual - averages[motor].at[next];
     averages[motor].at[next] = actual;
   }
-  if (++turn < turns) return;
-  turn = 0;
-  next = (next + 1u) % SAMPLES;
+}
+
+/* I60 is looked at between two samples, so that each has all motors. The call is the last thing: most interrupts need
+ * none. */
+void average_velocity_servo(void) {
+  const uint32_t first = turn;
+  if (first == 0u) {
+    turns = (uint32_t)i_integer(I60_FILTER_SAMPLE_SPACING) + 1u;
+    next = (next + 1u) % SAMPLES;
+  }
+  turn = first + 1u < turns ? first + 1u : 0u;
+  if (first < MOTORS && motors_active >> first != 0u) sample(first);
 }
 
 void average_velocity_shift(uint32_t motor, int64_t by) {

@@ -15,8 +15,7 @@ static inline uint32_t conversion_with_time(const struct conversion_entry* entry
   const uint32_t between = *entry->source[ENCODER_BETWEEN], since = *entry->source[ENCODER_SINCE];
   if (since > between || between - 1u >= turned - 1u) return counts; /* turned, or no time */
   const uint32_t all = (1u << bits) - 1u, part = since == between ? all : (since << bits) / between;
-  const uint32_t sign = 0u - (position & down); /* all ones: the part is taken off */
-  return counts + ((part ^ sign) - sign);
+  return (position & down) != 0u ? counts - part : counts + part;
 }
 
 static inline void conversion_software_1t(const struct conversion_entry* entry) {

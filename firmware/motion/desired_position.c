@@ -84,13 +84,18 @@ void desired_position_motor_changed(uint32_t motor) {
 void desired_position_take_actual(uint32_t motor) {
   struct motor* m = &motors[motor];
   struct path* p = &paths[motor];
-  m->commanded = m->actual;
+  FIXED_IN_REGISTER(m);
+  FIXED_IN_REGISTER(p);
+  const int64_t actual = m->actual, shown = actual + m->compensation;
+  m->commanded = actual;
   m->desired_step = 0;
-  m->master -= m->held_back;
-  m->held_back = 0;
+  if (m->held_back != 0) {
+    m->master -= m->held_back;
+    m->held_back = 0;
+  }
   if (p->follows) p->master_reading = *p->master;
-  m->trajectory = m->actual - m->master + m->compensation;
-  p->turning = m->trajectory + m->master;
+  m->trajectory = shown - m->master;
+  p->turning = shown;
 }
 
 void desired_position_shift(uint32_t motor, int64_t by) {
