@@ -14,11 +14,6 @@ namespace {
 
 constexpr const char* kUnknown = "???";
 
-struct Place {
-  std::string path = kUnknown;
-  unsigned line = 0;
-};
-
 std::string columns(const TaskCycles& cycles) {
   std::string text = std::to_string(std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0}));
   for (const std::uint64_t of_task : cycles) text += fmt::format(" {}", of_task);
@@ -27,29 +22,32 @@ std::string columns(const TaskCycles& cycles) {
 
 }  // namespace
 
+Callgrind::Callgrind(const std::string& image) : image_(image) {
+  image_lines("--profile", image, [this](std::uint32_t address, const std::string& path, unsigned line) {
+    places_[address] = {path, line};
+  });
+}
+
+Callgrind::Place Callgrind::place_of(std::uint32_t pc) const {
+  const auto found = places_.find(pc);
+  return found == places_.end() ? Place{} : found->second;
+}
+
 void Callgrind::cost(std::uint32_t pc, const TaskCycles& cycles) { costs_[pc] = cycles; }
 
 void Callgrind::call(std::uint32_t site, std::uint32_t callee, std::uint64_t count, const TaskCycles& inclusive) {
   calls_[site].push_back({callee, count, inclusive});
 }
 
-void Callgrind::write(std::ostream& out, const std::string& image, const std::string& about,
+void Callgrind::write(std::ostream& out, const std::string& about,
                       const std::function<std::string(std::uint32_t)>& function) const {
-  std::map<std::uint32_t, Place> places;
-  image_lines("--profile", image, [&](std::uint32_t address, const std::string& path, unsigned line) {
-    places[address] = {path, line};
-  });
-  const auto place_of = [&](std::uint32_t pc) {
-    const auto found = places.find(pc);
-    return found == places.end() ? Place{} : found->second;
-  };
   const auto name_of = [&](std::uint32_t pc) {
     const std::string name = function(pc);
     return name.empty() ? std::string(kUnknown) : name;
   };
   const std::string version = version_text();
   out << "# callgrind format\nversion: 1\ncreator: " << version.substr(0, version.find('\n')) << '\n';
-  out << "cmd: " << image << '\n';
+  out << "cmd: " << image_ << '\n';
   std::istringstream lines(about);
   for (std::string line; std::getline(lines, line);) out << "desc: " << line << '\n';
   out << "positions: line\nevents: Cycles Background RealTime HostPort Servo Phase\n";

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "app/callgrind.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/machine/machine.h"
 
@@ -35,17 +34,18 @@ std::size_t index(ProfiledTask task) { return static_cast<std::size_t>(task); }
 
 }  // namespace
 
-Profile::Profile(Machine& machine, std::string file, std::string image)
+Profile::Profile(Machine& machine, std::string file, const std::string& image)
     : machine_(machine),
       cpu_(machine.cpu()),
       file_(std::move(file)),
-      image_(std::move(image)),
-      elf_(image_of(image_)),
+      elf_(image_of(image)),
+      out_(image),
       executor_step_(elf_.symbol(kExecutorStep).value_or(0)),
       background_pass_(elf_.symbol(kBackgroundPass).value_or(0)),
       exchange_stacks_(elf_.symbol(kExchangeStacks).value_or(0)),
       on_trap_(cpu_.on_trap),
       on_mret_(cpu_.on_mret),
+      on_reset_(cpu_.on_reset),
       levels_{Level(ProfiledTask::kBackground)} {
   cpu_.on_trap = [this](std::uint32_t cause, std::uint32_t pc, Cycle now) {
     if (on_trap_) on_trap_(cause, pc, now);
@@ -55,6 +55,10 @@ Profile::Profile(Machine& machine, std::string file, std::string image)
     if (on_mret_) on_mret_(pc, now);
     leaving_ = true;
   };
+  cpu_.on_reset = [this] {
+    if (on_reset_) on_reset_();
+    begin_anew();
+  };
   cpu_.on_instruction = [this](std::uint32_t pc, Cycle cycles) { executed(pc, cycles); };
 }
 
@@ -62,6 +66,7 @@ Profile::~Profile() {
   cpu_.on_instruction = nullptr;
   cpu_.on_trap = on_trap_;
   cpu_.on_mret = on_mret_;
+  cpu_.on_reset = on_reset_;
 }
 
 void Profile::trapped(std::uint32_t cause) {
@@ -88,7 +93,7 @@ void Profile::executed(std::uint32_t pc, Cycle cycles) {
   if (level.on_side) side_.own += static_cast<std::uint64_t>(cycles);
   cost(pc)[index(level.task)] += static_cast<std::uint64_t>(cycles);
   if (leaving_) {
-    while (!level.stack.frames.empty()) leave(level, level.stack);
+    unwind(level);
     judge(level, level.stack.own);
     if (levels_.size() > 1) levels_.pop_back();
   } else if (!entering_ && to != pc + 2 && to != pc + 4) {
@@ -104,8 +109,9 @@ void Profile::follow(std::uint32_t from, std::uint32_t to) {
   const bool returns = to == cpu_.reg(kReturnAddress) || to == cpu_.reg(kOtherReturnAddress);
   const auto stack_of = [&]() -> Stack& { return level.on_side ? side_ : level.stack; };
   if (returns && !stack_of().frames.empty() && stack_of().frames.back().callee == exchange_stacks_) {
+    if (level.on_side) charge(level, side_);
     level.on_side = !level.on_side;
-    if (elf_.begins_function(to)) side_.frames.clear();
+    if (elf_.begins_function(to)) side_ = Stack{};
   }
   Stack& stack = stack_of();
   if (elf_.begins_function(to)) {
@@ -113,11 +119,13 @@ void Profile::follow(std::uint32_t from, std::uint32_t to) {
     const bool calls = behind(kReturnAddress) || behind(kOtherReturnAddress);
     if (!calls && !stack.frames.empty() && stack.frames.back().callee == to) return;  // a loop from its begin
     const std::uint32_t back = cpu_.reg(behind(kReturnAddress) || !calls ? kReturnAddress : kOtherReturnAddress);
+    if (to == executor_step_) {
+      charge(level, stack);
+      stack.executor = cpu_.reg(kFirstArgument);
+      stack.turn = stack.frames.size();
+      stack.line_begin = stack.own;
+    }
     stack.frames.push_back({from, to, back, !calls, stack.own});
-    if (to != executor_step_) return;
-    end_line(level);
-    level.executor = cpu_.reg(kFirstArgument);
-    level.line_begin = level.stack.own;
     return;
   }
   const auto waits_there = [to](const Frame& frame) { return frame.back == to; };
@@ -138,18 +146,42 @@ void Profile::leave(Level& level, Stack& stack) {
   Call& call = calls_[{frame.site, frame.callee}];
   ++call.count;
   call.inclusive[index(level.task)] += cycles;
-  if (frame.callee == background_pass_ && level.task == ProfiledTask::kBackground) judge(level, cycles);
+  if (stack.frames.size() < stack.turn) {
+    charge(level, stack);
+    stack.executor = 0;
+  }
+  if (frame.callee == background_pass_ && !unwinds_ && level.task == ProfiledTask::kBackground) judge(level, cycles);
 }
 
-void Profile::end_line(Level& level) {
-  if (level.executor == 0) return;
-  if (const auto line = line_of(level.executor)) level.lines[*line] += level.stack.own - level.line_begin;
-  level.executor = 0;
+// Frames that nothing returns to any more.
+void Profile::unwind(Level& level) {
+  unwinds_ = true;
+  while (!level.stack.frames.empty()) leave(level, level.stack);
+  unwinds_ = false;
+}
+
+// After a reset; and at the end. What had interrupted has run until now, however long.
+void Profile::begin_anew() {
+  for (; levels_.size() > 1; levels_.pop_back()) {
+    Level& level = levels_.back();
+    if (level.on_side) charge(level, side_);
+    unwind(level);
+    judge(level, level.stack.own);
+  }
+  unwind(levels_.front());
+  levels_.assign(1, Level(ProfiledTask::kBackground));
+  side_ = Stack{};
+  entering_ = leaving_ = false;
+}
+
+void Profile::charge(Level& level, Stack& stack) {
+  if (stack.executor == 0) return;
+  if (const auto line = line_of(stack.executor)) level.lines[*line] += stack.own - stack.line_begin;
+  stack.line_begin = stack.own;
 }
 
 // A run of a task has ended.
 void Profile::judge(Level& level, std::uint64_t cycles) {
-  end_line(level);
   Worst& worst = worst_[index(level.task)];
   ++worst.runs;
   if (cycles > worst.cycles) {
@@ -179,9 +211,7 @@ std::optional<Profile::Line> Profile::line_of(std::uint32_t executor) const {
 }
 
 void Profile::close() {
-  for (Level& level : levels_) {
-    while (!level.stack.frames.empty()) leave(level, level.stack);
-  }
+  begin_anew();
   TaskCycles total{};
   for (const auto& [page, costs] : pages_)
     for (const TaskCycles& of : *costs)
@@ -203,14 +233,13 @@ void Profile::close() {
 
 std::string Profile::text() const { return text_; }
 
-void Profile::write() const {
-  Callgrind out;
+void Profile::write() {
   for (const auto& [page, costs] : pages_)
     for (std::uint32_t i = 0; i < costs->size(); ++i)
-      if ((*costs)[i] != TaskCycles{}) out.cost(page << 12 | i << 1, (*costs)[i]);
-  for (const auto& [way, call] : calls_) out.call(way.first, way.second, call.count, call.inclusive);
+      if ((*costs)[i] != TaskCycles{}) out_.cost(page << 12 | i << 1, (*costs)[i]);
+  for (const auto& [way, call] : calls_) out_.call(way.first, way.second, call.count, call.inclusive);
   std::ofstream file(file_);
-  out.write(file, image_, text_, [this](std::uint32_t pc) { return elf_.symbol_at(pc); });
+  out_.write(file, text_, [this](std::uint32_t pc) { return elf_.symbol_at(pc); });
   file.close();
   if (!file) throw UsageError(fmt::format("--profile {}: cannot be written; expected a file", file_));
 }

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/callgrind.h"
 #include "app/profiled_task.h"
 #include "systemc/core/ticks.h"
 #include "systemc/cpu/cpu.h"
@@ -25,9 +26,9 @@ class Machine;
 
 class Profile {
  public:
-  // Takes on_trap, on_mret and on_instruction of the CPU, whose former owners are called on; ends before they do.
-  // Throws UsageError where the image cannot be read.
-  Profile(Machine& machine, std::string file, std::string image);
+  // Takes on_trap, on_mret, on_reset and on_instruction of the CPU, whose former owners are called on; ends before they
+  // do. Throws UsageError where the image cannot be read.
+  Profile(Machine& machine, std::string file, const std::string& image);
   ~Profile();
   Profile(const Profile&) = delete;
   Profile& operator=(const Profile&) = delete;
@@ -49,9 +50,14 @@ class Profile {
     bool tail;            // it was jumped to: whoever it returns to has called one before it
     std::uint64_t begin;  // Stack::own
   };
+  // `executor` 0: no program is executed. Its line has taken what came since `line_begin`; its turn ends with the frame
+  // that stood on top when it was called.
   struct Stack {
     std::vector<Frame> frames;
     std::uint64_t own = 0;  // cycles
+    std::uint32_t executor = 0;
+    std::size_t turn = 0;  // frames
+    std::uint64_t line_begin = 0;
   };
   // What one trap has interrupted goes on when it ends, so each has a stack of calls of its own.
   struct Level {
@@ -59,8 +65,6 @@ class Profile {
     ProfiledTask task;
     Stack stack;
     bool on_side = false;
-    std::uint32_t executor = 0;  // 0: no program is executed
-    std::uint64_t line_begin = 0;
     std::map<Line, std::uint64_t> lines;
   };
   struct Worst {
@@ -77,23 +81,27 @@ class Profile {
   void trapped(std::uint32_t cause);
   void executed(std::uint32_t pc, Cycle cycles);
   void follow(std::uint32_t from, std::uint32_t to);
-  void leave(Level& level, Stack& stack);  // its newest frame
-  void end_line(Level& level);
+  void leave(Level& level, Stack& stack);   // its newest frame
+  void charge(Level& level, Stack& stack);  // to the line under way
+  void begin_anew();
+  void unwind(Level& level);
   void judge(Level& level, std::uint64_t cycles);
   std::optional<Line> line_of(std::uint32_t executor) const;
   TaskCycles& cost(std::uint32_t pc);
-  void write() const;
+  void write();
 
   Machine& machine_;
   Cpu& cpu_;
-  std::string file_, image_;
+  std::string file_;
   ElfFile elf_;
+  Callgrind out_;
   std::uint32_t executor_step_, background_pass_, exchange_stacks_;
   decltype(Cpu::on_trap) on_trap_;
   decltype(Cpu::on_mret) on_mret_;
+  decltype(Cpu::on_reset) on_reset_;
   std::vector<Level> levels_;
   Stack side_;  // of the work in slices, which goes on from where it has paused
-  bool entering_ = false, leaving_ = false;
+  bool entering_ = false, leaving_ = false, unwinds_ = false;
   std::unordered_map<std::uint32_t, std::unique_ptr<Page>> pages_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Call> calls_;  // site, callee
   std::array<Worst, kProfiledTasks> worst_;

@@ -99,7 +99,7 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
     if (debugger_ && waivers_.reason(ledger, violation).empty()) debugger_->bus_error(timing_->text(ledger, violation));
   };
   if (!options.gdb.empty()) wait_for_debugger(gdb_port(options));
-  if (!options.profile.empty()) profile_ = std::make_unique<Profile>(*machine_, options.profile, config.firmware);
+  if (!options.profile.empty()) open_profile(options.profile, config.firmware);
   if (!options.record.empty()) open_record(options.record, options.record_of);
   if (!options.wave.empty()) open_wave(options.wave, wave_window(options), trace_groups(options));
 }
@@ -186,9 +186,14 @@ void Simulation::run(const std::function<void()>& host) {
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   close_wave();
   close_record();
-  close_profile();
+  std::exception_ptr error = thread.error();
+  try {
+    close_profile();
+  } catch (...) {
+    if (!error) error = std::current_exception();
+  }
   clear_progress();
-  if (thread.error()) std::rethrow_exception(thread.error());
+  if (error) std::rethrow_exception(error);
 }
 
 bool Simulation::go_on() {

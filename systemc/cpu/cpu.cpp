@@ -58,6 +58,7 @@ std::vector<std::uint32_t> Cpu::executed() const {
 }
 
 void Cpu::reset(std::uint32_t pc) {
+  if (on_reset) on_reset();
   State& s = *s_;
   s.x.fill(0);
   s.pc = pc & ~1u;

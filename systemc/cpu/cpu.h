@@ -94,6 +94,7 @@ class Cpu {
   std::function<void(std::uint32_t pc, Cycle)> on_mret;
   // After each instruction and each entry of a trap, which is told behind on_trap: where it stood, what it took.
   std::function<void(std::uint32_t pc, Cycle cycles)> on_instruction;
+  std::function<void()> on_reset;                                                  // before reset() changes anything
   std::function<bool(std::uint32_t address, std::uint32_t value)> on_store_watch;  // see watch_store
   void watch_store(std::uint32_t address);  // a store to this word calls on_store_watch; true stops with kHalt
 
