@@ -31,15 +31,16 @@ struct path_move {
   bool joins;           /* blends with the one before it */
   bool sharp, dwells;   /* if not: for its corner; Isx82 counts */
   bool is_arc;          /* X, Y, Z go by `circle`, their deltas are those of its ends */
+  bool timed;           /* by TM, or a DELAY; else by `feedrate` */
   int64_t time, change; /* Tm; length of the change of velocity at its beginning */
   int64_t acceleration, s_curve;
   struct fixed_divisor by_time;
   double start[AXIS_COUNT], delta[AXIS_COUNT], end[AXIS_COUNT];
   struct circle circle;
-  uint32_t absolute;        /* axes that it takes to its end, wherever it begins */
-  double told[AXIS_C + 1];  /* of those what its line says, of which rotary axes make an end */
-  struct feedrate feedrate; /* by which it goes; `unit` 0: in its time */
-  uint32_t number;          /* as coordinate_system.planned counts */
+  uint32_t absolute;       /* axes that it takes to its end, wherever it begins */
+  double told[AXIS_C + 1]; /* of those what its line says, of which rotary axes make an end */
+  struct feedrate feedrate;
+  uint32_t number; /* as coordinate_system.planned counts */
   struct path_line line;
 };
 

@@ -47,11 +47,15 @@ static uint32_t shift_axis(uint32_t cs, uint32_t axis, double shift) {
   return changed;
 }
 
-static void set_time(struct path_move* m) {
+static void set_time(uint32_t cs, struct path_move* m) {
   const int64_t least = m->acceleration > 0 ? m->acceleration : path_time(PATH_LEAST_MS);
   double time;
   slice_pause();
-  if (!(m->feedrate.unit > 0.0) || !plan_path_time(m, &time)) return;
+  if (m->timed) return;
+  if (!plan_path_time(m, &time)) {
+    coordinate_systems[cs].failure = RUN_TIME_FEEDRATE;
+    return;
+  }
   slice_pause();
   const int64_t wanted = path_time(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS);
   path_set_time(m, wanted > least ? wanted : least);
@@ -79,7 +83,7 @@ void plan_anew(uint32_t cs, double position[AXIS_COUNT]) {
     slice_pause();
   }
   for (uint32_t i = 0; i < p->count; i++) {
-    if (((changed >> i) & 1u) != 0) set_time(path_of(p, i));
+    if (((changed >> i) & 1u) != 0) set_time(cs, path_of(p, i));
     if (i != 0 && ((changed | changed << 1) >> i & 1u) != 0) judge_corner(cs, i);
   }
 }

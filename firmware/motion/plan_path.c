@@ -123,8 +123,8 @@ enum run_time_error plan_path(uint32_t cs) {
   m->is_arc = kind == CIRCLE_ARC;
   m->absolute = s->pending_axes & s->pending_absolute;
   for (uint32_t axis = AXIS_A; axis <= AXIS_C; axis++) m->told[axis] = s->pending[axis];
-  if (s->time_mode) {
-    m->feedrate.unit = 0.0;
+  m->timed = s->time_mode;
+  if (m->timed) {
     time = cs_real(cs, ISX89_FEEDRATE);
   } else {
     m->feedrate = feedrate_of(cs, m);
@@ -145,7 +145,7 @@ void plan_path_delay(uint32_t cs, double milliseconds) {
   }
   m->is_arc = m->sharp = false;
   m->absolute = 0;
-  m->feedrate.unit = 0.0;
+  m->timed = true;
   m->dwells = true;
   set_times(cs, m, milliseconds);
   slice_pause();

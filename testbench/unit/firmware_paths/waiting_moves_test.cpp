@@ -127,6 +127,23 @@ TEST_F(WaitingMoves, TakeTheTimeThatTheirLinesAskFor) {
   }
 }
 
+// A line that had no way, and has one now that its feedrate does not make: as the line would do, it is a run-time
+// error.
+TEST_F(WaitingMoves, WithoutAFeedrateAreARunTimeError) {
+  for (const char* none : {"F0", "F10 I5190=0"}) {
+    SCOPED_TRACE(none);
+    begin({"1000X"});
+    stop({std::string(none) + " X1", "F10 I5190=1000 X2"});
+    ASSERT_EQ(host("#1HMZ"), "");
+    platform::servo_ticks(5);
+    ASSERT_EQ(host("&1R"), "");
+    platform::servo_ticks(ticks_of(100));
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(cs().error, RUN_TIME_FEEDRATE);
+    expect_at({0});
+  }
+}
+
 // What a forward program rounds is no other way: the time stays as it is, to its last bit.
 TEST_F(WaitingMoves, KeepTheirTimesWhenAForwardProgramRounds) {
   for (const char* line : {"X3", "CIRCLE1 X1 Y0 I1 J0"})
