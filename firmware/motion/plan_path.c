@@ -145,7 +145,6 @@ void plan_path_delay(uint32_t cs, double milliseconds) {
   }
   m->is_arc = m->sharp = false;
   m->absolute = 0;
-  m->timed = true;
   m->dwells = true;
   set_times(cs, m, milliseconds);
   slice_pause();
