@@ -27,6 +27,6 @@ brick_add_check(pins.fresh rtl/pins/generate.py --check)  # what is made of the 
 brick_add_check(docs.links tools/check_links.py)
 brick_add_check(docs.figures tools/check_figures.py)
 brick_add_check(docs.coverage tools/coverage.py --check)  # a row for every module, model and folder
-brick_add_check(docs.mutation tools/mutate report --check)  # made of the results, a reason for each survivor
+brick_add_check(docs.mutation tools/mutate report --check)  # made of the results, no reason of a dead mutant
 brick_add_check(docs.citations tools/check_citations.py)  # of the data sheet: each leads to a section, a rule
 brick_add_check(trace.requirements tools/traceability.py)

@@ -43,8 +43,7 @@ void PortAMaster::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
   state_ = State::kIdle;
   stand_ = edge;
   wires_.forget();
-  shown_.clear();
-  arrived_ = {};
+  arrive_until(tick_to_fs(edge));  // the rest is on its way still, whoever is reset
   moving_ta_.reset();
   levels_ = {};
   if (watch_ != nullptr) watch_->bus_reset();

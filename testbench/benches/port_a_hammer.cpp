@@ -105,6 +105,7 @@ class PortAHammer {
         default:
           ++others;
           other(word, clock);
+          if (below(2) == 0) check(same, word, clock);  // the address stands, the selects alone move
           break;
       }
       if (below(8) == 0) driver_.wait_until(driver_.free_at() + driver_.random() % 40'000'000);
@@ -147,12 +148,16 @@ class PortAHammer {
     same.word(fmt::format("{}:${:06X}", word.x ? 'X' : 'Y', word.address), driver_.read(place(word, clock)) & word.mask,
               word.value);
   }
-  // As short as the clock lets it be (host-bus:2.2/5, host-bus:2.6/9), or longer than any of ours.
+  // As short as the clock lets it be (host-bus:2.2/5, host-bus:2.6/9), longer than any of ours, or of 4 to 9 ticks: it
+  // ends where the board looks at address and strobe of an access (host-bus:2.6/1).
   void other(const Word& word, const Clock& clock) {
     const bool write = below(2) != 0;
     const bool one = clock.i52 < 15 && port_a_limits(clock.i52, 1, write).setup >= 2 * driver_.aperture();
     const unsigned least = one ? 1 : 2;
-    const unsigned ws = below(3) != 0 ? least + below(3) : least + below(30);
+    const unsigned looked = (4 + below(6)) * (clock.i52 + 1) / 12;  // a clock is 12 / (I52 + 1) ticks
+    const unsigned kind = below(3), ws = kind == 0   ? least + below(3)
+                                         : kind == 1 ? least + below(30)
+                                                     : std::max(least, looked);
     driver_.foreign({word.address, word.x, below(2) != 0 ? kMemory : kFlash, false, ws}, write,
                     driver_.random() & 0xFFFFFF);
   }

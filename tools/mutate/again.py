@@ -52,6 +52,9 @@ def main(modules, options):
         for mutant in chosen:
             by = rows[mutant.key]["by"]
             verdict = judge.again(mutant, by)
+            if verdict is None:
+                print(f"{mutant.file}:{mutant.line}: was killed by {by}, which is no more")
+                continue
             count += 1
             if verdict.status != KILLED:
                 lives.append(f"{mutant.file}:{mutant.line}: {mutant.place.operator}: {mutant.change}: was killed by "

@@ -7,7 +7,7 @@ macro with arguments is left alone; a macro or an enumerator by its name is a co
 import re
 import subprocess
 
-from clang.cindex import CursorKind, Index, StorageClass
+from clang.cindex import CursorKind, Index, StorageClass, TypeKind
 from mutant import Place
 
 OTHER = {  # operator: [(operator of the mutant, its text)]
@@ -172,7 +172,8 @@ class Finder:
         if kind in (CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR):
             left, right = (self.operand(child) for child in children)
             for operator, new in OTHER.get(sign, []):
-                self.add(node, operator, f"{left} {new} {right}")
+                if new not in "+-" or not is_pointer(children[1]):  # two pointers have only a `-`, `n + p` only a `+`
+                    self.add(node, operator, f"{left} {new} {right}")
         elif kind == CursorKind.UNARY_OPERATOR:
             self.unary(node, children[0])
         elif kind == CursorKind.CONDITIONAL_OPERATOR:
@@ -215,6 +216,10 @@ class Finder:
         elif re.fullmatch(r"[A-Z][A-Z0-9_]*", text) and text != "NULL" and not (
                 node.kind == CursorKind.DECL_REF_EXPR and node.referenced.kind != CursorKind.ENUM_CONSTANT_DECL):
             self.add(node, "constant", f"({text} + 1)")
+
+
+def is_pointer(node):
+    return node.type.get_canonical().kind in (TypeKind.POINTER, TypeKind.CONSTANTARRAY, TypeKind.INCOMPLETEARRAY)
 
 
 def next_constant(text):

@@ -3,6 +3,7 @@ none of them kills is compiled alone: where the object code is that of the origi
 
 import collections
 import dataclasses
+import fcntl
 import shlex
 import subprocess
 import threading
@@ -30,6 +31,7 @@ class Judge:
     def __init__(self, root, tree, module):
         self.root, self.tree, self.module = root, tree, module
         self.out = root / "build/mutate" / f"firmware_{module.name}"
+        self.alone = locked(self.out)
         self.programs = {t.program: overlay.Program(tree, t.program) for t in module.opinion}
         self.commands = self.compilations()
         self.sources = {file: (root / file).read_bytes() for file in self.commands}
@@ -130,13 +132,17 @@ class Judge:
         return dataclasses.replace(verdict, by=verdict.by if reached else "no test comes to it", seconds=seconds)
 
     def again(self, mutant, by):
-        """`by`: 'PROGRAM: TEST', which passes with number 0; nothing else is built."""
+        """`by`: 'PROGRAM: TEST', which passes with number 0; nothing else is built. None: there is no such test now."""
         name, _, test = by.partition(": ")
+        if name not in self.programs:
+            return None
         if name not in self.built:
             self.built[name] = self.overlay().build(self.programs[name], False, [self.recorder(self.programs[name])])
         tests = Tests(name, test)
         verdicts = [runner.run(self.built[name], tests, n, ZERO_LIMIT, True, self.root, **FEWER)
                     for n in (0, mutant.number)]
+        if verdicts[0].by.endswith(runner.no_test(tests)):
+            return None
         if verdicts[0].status != ALIVE:
             raise runner.BadBuild(f"number 0, the folder as it is, does not pass: {verdicts[0].by}")
         return verdicts[1]
@@ -155,8 +161,11 @@ class Judge:
         (folder / name).write_bytes(source)
         words = [w for w in plain(self.commands[file], name, "alone.o") if not w.startswith(("-fsanitize", "-O", "-g"))]
         words = [f"-I{(self.tree / w[2:]).resolve()}" if w.startswith("-I") else w for w in words]
-        done = subprocess.run([*words, *OPTIMIZED], cwd=folder, capture_output=True, text=True, timeout=COMPILE_LIMIT,
-                              check=False)
+        try:
+            done = subprocess.run([*words, *OPTIMIZED], cwd=folder, capture_output=True, text=True,
+                                  timeout=COMPILE_LIMIT, check=False)
+        except subprocess.TimeoutExpired as late:
+            raise overlay.NoBuild(f"{shlex.join(words)}: no end within {COMPILE_LIMIT} s") from late
         if done.returncode != 0:
             raise overlay.NoBuild(f"{shlex.join(words)}\n{done.stderr[-2000:]}")
         return (folder / "alone.o").read_bytes()
@@ -171,6 +180,17 @@ class Judge:
         if equal.status == EQUAL:
             return "filter", dataclasses.replace(equal, seconds=seconds)
         return "", dataclasses.replace(killed, seconds=seconds)
+
+
+def locked(folder):
+    """Held until this process ends: the programs that are built there are one's own."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = (folder / "lock").open("w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as held:
+        raise runner.BadBuild(f"{folder}: another ./dev mutate is at work there") from held
+    return lock
 
 
 def plain(command, source, made):

@@ -57,11 +57,15 @@ def failures(binary, tests, limit, folder):
     return sorted({name.rstrip(",") for name in re.findall(r"^\[  FAILED  \] ([^\s,]+[./][^\s,]+)", done.stdout, re.M)})
 
 
+def no_test(tests):
+    return f"no test is called {tests.filter}"
+
+
 def judge(status, said, tests, seconds):
     if status == 0:
         ran = re.search(r"^\[==========\] (\d+) tests? from", said, re.M)
         if ran is None or ran.group(1) == "0":
-            return Verdict(OUTSIDE, f"{tests.program}: no test is called {tests.filter}", seconds)
+            return Verdict(OUTSIDE, f"{tests.program}: {no_test(tests)}", seconds)
         return Verdict(ALIVE, "", seconds)
     failed = re.search(r"^\[  FAILED  \] (\S+)", said, re.M)
     if failed:

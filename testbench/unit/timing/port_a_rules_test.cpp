@@ -250,39 +250,72 @@ TEST(PortATiming, BetweenCyclesOfTwoRegionsTheFewerWaitStatesCount) {
   }
 }
 
-// host-bus:2.2/2, host-bus:2.5: behind a read of the board its end of D, a pad late, comes before whoever drives next,
-// at the wait states of host-bus:2.5 up to I52 = 15. Mixed forms leave what the rows of the two cycles make together.
-// Short are the two clocks of the table there, behind the dual-ported RAM, by no more than it says.
-TEST(PortATiming, DIsOffBeforeWhoeverDrivesNext) {
-  constexpr TimeFs kPad = 8'477'105;  // one of 117.9648 MHz, in femtoseconds
-  struct Areas {
-    unsigned to, main, gate, ram, latch;
-  };
-  constexpr Areas kAreas[] = {{4, 1, 8, 4, 15}, {7, 1, 8, 3, 15}, {9, 1, 10, 4, 15}, {15, 2, 16, 7, 31}};
-  const auto sum = [](unsigned n, std::initializer_list<std::pair<unsigned, unsigned>> rows) {
+constexpr TimeFs kPad = 8'477'105;  // one of 117.9648 MHz, in femtoseconds
+
+// From the end of a read to the moment at which the next cycle drives D or lets it be driven, by its wait states:
+// host-bus:2.2/2. Mixed forms leave what the rows of the two cycles make together.
+struct Gap {
+  TimeFs write, read;
+};
+Gap gap(unsigned n, unsigned first, unsigned next) {
+  const auto sum = [n](std::initializer_list<std::pair<unsigned, unsigned>> rows) {
     TimeFs all = 0;
     for (const auto& [number, ws] : rows) all += row(number, ws, 0)->fs(n);
     return all;
   };
+  // Row 110 has no form for one wait state: as for two.
+  const unsigned fewer = std::min(first, next), drives = std::max(2u, next);
+  Gap gap{sum({{117, first}, {101, next}, {110, drives}}), sum({{117, first}, {115, next}})};
+  if (fewer > 1) {
+    gap.write = std::max(gap.write, row(112, fewer, 0)->fs(n));
+    gap.read = std::max(gap.read, row(113, fewer, 0)->fs(n));
+  }
+  return gap;
+}
+
+// host-bus:2.5: behind a read of the board its end of D, a pad late, comes before whoever drives next, at the wait
+// states of host-bus:2.5 up to I52 = 15. Short are the two clocks of the table there, behind the dual-ported RAM, by no
+// more than it says.
+TEST(PortATiming, DIsOffBeforeWhoeverDrivesNext) {
+  struct Areas {
+    unsigned to, main, gate, ram, latch;
+  };
+  constexpr Areas kAreas[] = {{4, 1, 8, 4, 15}, {7, 1, 8, 3, 15}, {9, 1, 10, 4, 15}, {15, 2, 16, 7, 31}};
   for (unsigned i52 = 0; i52 <= 15; ++i52) {
-    const unsigned n = i52 + 1;
     const Areas* a = kAreas;
     while (a->to < i52) ++a;
     for (const unsigned first : {a->gate, a->ram, a->latch})
       for (const unsigned next : {a->main, a->gate, a->ram, a->latch, 7u}) {
-        // Row 110 has no form for one wait state: as for two.
-        const unsigned fewer = std::min(first, next), drives = std::max(2u, next);
-        TimeFs write = sum(n, {{117, first}, {101, next}, {110, drives}}), read = sum(n, {{117, first}, {115, next}});
-        if (fewer > 1) {
-          write = std::max(write, row(112, fewer, 0)->fs(n));
-          read = std::max(read, row(113, fewer, 0)->fs(n));
-        }
+        const auto [write, read] = gap(i52 + 1, first, next);
         const bool is_short = i52 >= 14 && first == a->ram;
         const TimeFs by_read = !is_short ? 0 : (i52 == 14 ? 610 : 1360) * (kFsPerNs / 1000);
         const TimeFs by_write = !is_short || next > 2 ? 0 : (i52 == 14 ? 920 : 1880) * (kFsPerNs / 1000);
         EXPECT_GE(read, kPad - by_read) << "I52 = " << i52 << ", " << first << " and " << next << " wait states";
         EXPECT_GE(write, kPad - by_write) << "I52 = " << i52 << ", " << first << " and " << next << " wait states";
       }
+  }
+}
+
+// host-bus:2.5: the clock up to which rows 112 and 113 leave a pad, and that the eighth wait state which the field of
+// the RAM does not have would mend it at 14 and 15.
+TEST(PortATiming, TheClocksUpToWhichDIsOffInTime) {
+  constexpr unsigned kOneMore = 8;
+  constexpr TimeFs kWord = 95'800'000;  // host-bus:2.6/4
+  for (unsigned i52 = 0; i52 < 32; ++i52) {
+    SCOPED_TRACE(::testing::Message() << "I52 = " << i52);
+    const unsigned n = i52 + 1, main = i52 <= 9 ? 1 : i52 <= 15 ? 2 : i52 <= 23 ? 4 : 5;
+    const unsigned gate = std::clamp(n, 8u, 31u), ram = i52 <= 4 ? 4 : i52 <= 7 ? 3 : i52 <= 9 ? 4 : 7;
+    EXPECT_EQ(row(105, gate, 0)->fs(n) >= kWord, i52 <= 30);
+    EXPECT_EQ(gap(n, gate, main).write >= kPad, i52 <= 19);
+    EXPECT_EQ(gap(n, gate, ram).write >= kPad, i52 <= 19);
+    EXPECT_EQ(gap(n, gate, gate).write >= kPad, i52 <= 25);
+    const bool four = i52 == 16 || i52 == 17;  // the first of main memory's four
+    EXPECT_EQ(gap(n, ram, main).write >= kPad, i52 <= 13 || four);
+    for (const unsigned next : {main, ram, gate}) {
+      EXPECT_EQ(gap(n, gate, next).read >= kPad, i52 <= 21);
+      EXPECT_EQ(gap(n, ram, next).read >= kPad, i52 <= 13);
+    }
+    EXPECT_EQ(gap(n, kOneMore, main).read >= kPad, i52 <= 21);
   }
 }
 
