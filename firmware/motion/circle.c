@@ -128,9 +128,16 @@ enum circle_kind circle_of(const struct circle_line* line, struct circle* c) {
 }
 
 double circle_length(const struct circle* c) {
-  const double round = (c->radius + c->growth / 2.0) * c->angle;
+  const double mean = c->radius + c->growth * 0.5;
   slice_pause();
-  return c->growth == 0.0 ? round : math_square_root(round * round + c->growth * c->growth);
+  const double round = mean * c->angle;
+  slice_pause();
+  if (c->growth == 0.0) return round;
+  const double square = round * round;
+  slice_pause();
+  const double sum = square + c->growth * c->growth;
+  slice_pause();
+  return math_square_root(sum);
 }
 
 double circle_least_radius(const struct circle* c) { return c->growth < 0.0 ? c->radius + c->growth : c->radius; }
@@ -157,13 +164,22 @@ void circle_at(const struct circle* c, double part, double position[CIRCLE_AXES]
 }
 
 void circle_direction(const struct circle* c, double part, double direction[CIRCLE_AXES]) {
-  const double angle = c->angle * part, radius = (c->radius + c->growth * part) * c->angle;
+  const double angle = c->angle * part;
+  slice_pause();
+  const double now = c->radius + c->growth * part;
+  slice_pause();
+  const double radius = now * c->angle;
   slice_pause();
   const double cosine = math_cosine(angle, false), sine = math_sine(angle, false);
-  const double outward = c->growth * cosine - radius * sine, onward = c->growth * sine + radius * cosine;
+  slice_pause();
+  const double outward = c->growth * cosine - radius * sine;
+  slice_pause();
+  const double onward = c->growth * sine + radius * cosine;
   slice_pause();
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
-    direction[i] = c->first[i] * outward + c->second[i] * onward + c->along[i];
+    const double in_plane = c->first[i] * outward + c->second[i] * onward;
+    slice_pause();
+    direction[i] = in_plane + c->along[i];
     slice_pause();
   }
 }

@@ -14,6 +14,7 @@ static double cosine(const double before[AXIS_COUNT], const double after[AXIS_CO
     product += before[axis] * after[axis];
     slice_pause();
     first += before[axis] * before[axis];
+    slice_pause();
     second += after[axis] * after[axis];
     slice_pause();
   }
@@ -23,15 +24,20 @@ static double cosine(const double before[AXIS_COUNT], const double after[AXIS_CO
   return product / length;
 }
 
+bool corner_is_sharp(uint32_t cs, const double before[AXIS_COUNT], const double after[AXIS_COUNT], bool* has_dwell) {
+  const double limit = cs_real(cs, ISX83_CORNER_RULES);
+  if (limit == 0.0) return false;
+  const double turn = cosine(before, after);
+  slice_pause();
+  if (!(turn < limit)) return false;
+  *has_dwell = turn < i_variable_read(i_cs_real(cs, ISX83_CORNER_RULES) + ISX85);
+  return true;
+}
+
 void corner_plan(uint32_t cs, struct move* m) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  const double limit = cs_real(cs, ISX83_CORNER_RULES);
-  if (!s->may_join || limit == 0.0) return;
-  const double turn = cosine(s->last_delta, m->delta);
-  slice_pause();
-  if (!(turn < limit)) return;
+  if (!s->may_join || !corner_is_sharp(cs, s->last_delta, m->delta, &m->has_dwell)) return;
   m->is_sharp = true;
-  m->has_dwell = turn < i_variable_read(i_cs_real(cs, ISX83_CORNER_RULES) + ISX85);
   s->may_join = false;
 }
 

@@ -7,6 +7,8 @@
 
 #include "firmware/motion/coordinate_system.h"
 
+/* Whether a way is too sharp behind the one before it to blend; then also whether Isx82 counts. In slices. */
+bool corner_is_sharp(uint32_t cs, const double before[AXIS_COUNT], const double after[AXIS_COUNT], bool* has_dwell);
 void corner_plan(uint32_t cs, struct move* m); /* of a LINEAR move, its deltas known; in slices */
 bool corner_waits(uint32_t cs);                /* before the calculated move, which does not blend */
 

@@ -131,32 +131,10 @@ void path_at_end(uint32_t count, struct path_point* point) {
   for (uint32_t i = 0; i < count; i++) point->parts[i] = PATH_WHOLE;
 }
 
-/* False: it ends where it did. */
-static bool move_by(struct path_move* m, uint32_t axis, double shift) {
-  const bool ends = ((m->absolute >> axis) & 1u) != 0, turns = axis >= AXIS_X && axis <= AXIS_Z;
-  m->start[axis] += shift;
-  if (turns) m->circle.centre[axis - AXIS_X] += shift;
+void path_direction(const struct path_move* m, double part, double direction[AXIS_COUNT]) {
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) direction[axis] = m->delta[axis];
   slice_pause();
-  if (!ends) {
-    m->end[axis] += shift;
-    return true;
-  }
-  m->delta[axis] -= shift;
-  if (turns) m->circle.along[axis - AXIS_X] -= shift;
-  return false;
-}
-
-uint32_t path_begin_at(struct path* p, double position[AXIS_COUNT]) {
-  uint32_t changed = 0;
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    const double shift = position[axis] - path_of(p, 0)->start[axis];
-    uint32_t i = 0;
-    while (shift != 0.0 && i < p->count && move_by(path_of(p, i), axis, shift)) i++;
-    if (shift != 0.0 && i < p->count) changed |= 1u << i;
-    position[axis] = path_of(p, p->count - 1u)->end[axis];
-    slice_pause();
-  }
-  return changed;
+  if (m->is_arc) circle_direction(&m->circle, part, &direction[AXIS_X]);
 }
 
 int64_t path_pop(struct path* p) {

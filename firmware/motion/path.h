@@ -17,6 +17,7 @@
 #include "firmware/motion/circle.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/fixed_ratio.h"
+#include "firmware/motion/plan_linear.h"
 
 enum { PATH_MOVES = 4, PATH_TIME_BITS = 32 };
 
@@ -30,14 +31,16 @@ struct path_move {
   bool joins;           /* blends with the one before it */
   bool sharp, dwells;   /* if not: for its corner; Isx82 counts */
   bool is_arc;          /* X, Y, Z go by `circle`, their deltas are those of its ends */
+  bool timed;           /* by TM; else by `feedrate` */
   int64_t time, change; /* Tm; length of the change of velocity at its beginning */
   int64_t acceleration, s_curve;
   struct fixed_divisor by_time;
   double start[AXIS_COUNT], delta[AXIS_COUNT], end[AXIS_COUNT];
   struct circle circle;
-  uint32_t absolute; /* axes that it takes to its end, wherever it begins */
-  double feed;       /* by which it goes; 0: in its time */
-  uint32_t number;   /* as coordinate_system.planned counts */
+  uint32_t absolute;       /* axes that it takes to its end, wherever it begins */
+  double told[AXIS_C + 1]; /* of those what its line says, of which rotary axes make an end */
+  struct feedrate feedrate;
+  uint32_t number; /* as coordinate_system.planned counts */
   struct path_line line;
 };
 
@@ -80,9 +83,7 @@ void path_at(struct path* p, struct path_reach reach, int64_t time, struct path_
 void path_axes_at(struct path* p, const struct path_point* point, double position[AXIS_COUNT]); /* user units */
 void path_at_end(uint32_t count, struct path_point* point);                                     /* of so many moves */
 int64_t path_pop(struct path* p); /* the first one is over; what to take off times */
-/* Its moves begin at `position`, which becomes the end of the last. An axis goes the ways that it was to go, up to the
- * first move that takes it to its end all the same: an arc as it is, and evenly what that leaves. Which moves do, a bit
- * each. */
-uint32_t path_begin_at(struct path* p, double position[AXIS_COUNT]);
+/* At the beginning of a move, 0, or its end, 1. */
+void path_direction(const struct path_move* m, double part, double direction[AXIS_COUNT]);
 
 #endif

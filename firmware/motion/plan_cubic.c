@@ -36,7 +36,7 @@ void plan_pvt(uint32_t cs) {
   const bool goes_on = s->may_join && before->kind == MOVE_PVT;
   double target[AXIS_COUNT];
   struct move* m = plan_begin(cs, MOVE_PVT);
-  (void)plan_targets(cs, m, target);
+  plan_targets(cs, m, target);
   m->time = m->knot_time[0] = cubic_time(cs);
   m->knot_time[1] = plan_units(OVERRUN_MS);
   m->overruns = false;
@@ -80,7 +80,7 @@ void plan_spline(uint32_t cs) {
   const struct move* before = &s->moves[s->executing];
   double target[AXIS_COUNT];
   struct move* m = plan_begin(cs, MOVE_SPLINE);
-  (void)plan_targets(cs, m, target);
+  plan_targets(cs, m, target);
   m->time = cubic_time(cs);
   if (before->kind != MOVE_SPLINE || (s->mode == MODE_SPLINE1 && before->time != m->time)) s->may_join = false;
   m->overruns = false;

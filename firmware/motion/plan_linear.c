@@ -8,26 +8,25 @@
 #include "firmware/motion/system_motors.h"
 #include "firmware/variables/i_variables.h"
 
-double plan_feed(uint32_t cs, double fastest) {
-  double feed = cs_real(cs, ISX89_FEEDRATE);
+struct feedrate plan_feedrate(uint32_t cs, double fastest) {
+  struct feedrate f = {.feed = cs_real(cs, ISX89_FEEDRATE), .axes = coordinate_systems[cs].feedrate_axes};
   const double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT);
-  if (limit > 0.0 && feed > limit) feed = limit;
-  return fastest > 0.0 && feed > fastest ? fastest : feed;
+  if (limit > 0.0 && f.feed > limit) f.feed = limit;
+  if (fastest > 0.0 && f.feed > fastest) f.feed = fastest;
+  f.unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT);
+  if (i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME)) != 0) f.alternate = cs_real(cs, ISX86_ALTERNATE_FEEDRATE);
+  return f;
 }
 
-bool plan_feed_time(uint32_t cs, const double delta[AXIS_COUNT], uint32_t moving, double feed, double* time) {
-  const struct coordinate_system* s = &coordinate_systems[cs];
-  double unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT), alternate = 0.0;
+bool plan_feed_time(const struct feedrate* f, const double delta[AXIS_COUNT], double* time) {
   double square = 0.0, other = 0.0, single = 0.0;
   uint32_t axes = 0;
-  if (i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME)) != 0) alternate = cs_real(cs, ISX86_ALTERNATE_FEEDRATE);
-  const bool follows = !(alternate > 0.0); /* what is no feedrate axis */
+  const bool follows = !(f->alternate > 0.0); /* what is no feedrate axis */
   *time = 0.0;
-  if (moving == 0) return true;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    if (((moving >> axis) & 1u) == 0) continue;
+    if (delta[axis] == 0.0) continue;
     slice_pause();
-    if (((s->feedrate_axes >> axis) & 1u) == 0) {
+    if (((f->axes >> axis) & 1u) == 0) {
       other = plan_larger(other, math_absolute(delta[axis]));
       continue;
     }
@@ -35,16 +34,18 @@ bool plan_feed_time(uint32_t cs, const double delta[AXIS_COUNT], uint32_t moving
     single = math_absolute(delta[axis]);
     square += delta[axis] * delta[axis];
   }
-  if (!(unit > 0.0) || (!(feed > 0.0) && (axes != 0 || follows))) return false;
+  if (axes == 0 && other == 0.0) return true;
+  if (!(f->unit > 0.0) || (!(f->feed > 0.0) && (axes != 0 || follows))) return false;
   if (axes == 0) {
-    *time = other / (follows ? feed : alternate) * unit;
+    *time = other / (follows ? f->feed : f->alternate) * f->unit;
     return true;
   }
+  slice_pause();
   double length = axes == 1 ? single : math_square_root(square);
   slice_pause();
-  *time = length / feed * unit;
+  *time = length / f->feed * f->unit;
   slice_pause();
-  if (!follows) *time = plan_larger(*time, other / alternate * unit);
+  if (!follows) *time = plan_larger(*time, other / f->alternate * f->unit);
   return true;
 }
 
@@ -128,10 +129,11 @@ bool plan_linear(uint32_t cs) {
   double time, target[AXIS_COUNT];
   struct move* m = plan_begin(cs, MOVE_LINEAR);
   slice_pause();
-  const uint32_t moving = plan_targets(cs, m, target);
+  plan_targets(cs, m, target);
+  const struct feedrate feedrate = plan_feedrate(cs, 0.0);
   if (s->time_mode)
     time = cs_real(cs, ISX89_FEEDRATE);
-  else if (!plan_feed_time(cs, m->delta, moving, plan_feed(cs, 0.0), &time))
+  else if (!plan_feed_time(&feedrate, m->delta, &time))
     return false;
   const struct limits limits = motor_limits(cs, target);
   set_times(cs, m, time, &limits);

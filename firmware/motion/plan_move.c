@@ -2,6 +2,7 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
+#include "firmware/motion/system_motors.h"
 
 int64_t plan_units(double milliseconds) {
   const double time = milliseconds < TRAJECTORY_LONGEST_MS ? milliseconds : TRAJECTORY_LONGEST_MS;
@@ -20,19 +21,18 @@ struct move* plan_begin(uint32_t cs, enum move_kind kind) {
   return m;
 }
 
-uint32_t plan_targets(uint32_t cs, struct move* m, double target[AXIS_COUNT]) {
+void plan_targets(uint32_t cs, struct move* m, double target[AXIS_COUNT]) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  uint32_t moving = 0;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     m->delta[axis] = 0.0;
     target[axis] = s->position[axis];
     if (((s->pending_axes >> axis) & 1u) == 0) continue;
     target[axis] = s->pending[axis];
+    if (((s->pending_absolute >> axis) & 1u) != 0)
+      target[axis] = system_motors_turn(cs, axis, s->position[axis], target[axis]);
     m->delta[axis] = target[axis] - s->position[axis];
-    if (m->delta[axis] != 0.0) moving |= 1u << axis;
     slice_pause();
   }
-  return moving;
 }
 
 void plan_finish(uint32_t cs, struct move* m, bool blends, const double target[AXIS_COUNT]) {

@@ -14,8 +14,8 @@ int64_t plan_units(double milliseconds); /* rounded to the nearest 2^-23 ms, at 
 double plan_milliseconds(int64_t time);
 struct move* plan_begin(uint32_t cs, enum move_kind kind); /* the move that is not the executing one */
 
-/* Where the line goes: pending targets, other axes as they are. The move's deltas; which axes move. */
-uint32_t plan_targets(uint32_t cs, struct move* m, double target[AXIS_COUNT]);
+/* Where the line goes: pending targets, other axes as they are. And the move's deltas. */
+void plan_targets(uint32_t cs, struct move* m, double target[AXIS_COUNT]);
 /* The move is calculated and ends at `target`, to be placed next (motion/place.h); `blends`: with the next one, if that
  * does too. */
 void plan_finish(uint32_t cs, struct move* m, bool blends, const double target[AXIS_COUNT]);

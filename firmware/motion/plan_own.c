@@ -68,7 +68,7 @@ static void stretch(uint32_t cs, uint32_t moving, double longest) {
 void plan_rapid(uint32_t cs) {
   double target[AXIS_COUNT], longest;
   struct move* m = plan_begin(cs, MOVE_OWN);
-  (void)plan_targets(cs, m, target);
+  plan_targets(cs, m, target);
   m->own = set_goals(cs, target, &longest);
   m->homes = false;
   stretch(cs, m->own, longest);

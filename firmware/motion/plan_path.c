@@ -12,8 +12,6 @@
 
 enum { ISX97 = 1 }; /* behind Isx96 */
 
-#define LEAST_MS 0.5 /* of a move without acceleration time */
-
 /* The move under way, and its direction at its ends for the corner rules. One: there is one planner. */
 static struct path_move planning;
 static struct move corner_move;
@@ -47,53 +45,46 @@ static enum circle_kind find_circle(uint32_t cs, struct path_move* m) {
 }
 
 /* The length of an arc counts as the way of one feedrate axis of X, Y, Z. */
-static uint32_t arc_ways(const struct coordinate_system* s, const struct path_move* m, uint32_t moving,
-                         double way[AXIS_COUNT]) {
+static void arc_ways(const struct path_move* m, double way[AXIS_COUNT]) {
   const double length = circle_length(&m->circle);
   bool counted = false;
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
-    const uint32_t axis = AXIS_X + i, bit = 1u << axis;
+    const uint32_t axis = AXIS_X + i, axes = m->feedrate.axes;
     way[axis] = m->circle.along[i];
-    moving &= ~bit;
-    if (!counted && ((s->feedrate_axes & bit) != 0 || ((s->feedrate_axes & AXIS_XYZ) == 0 && i == 0))) {
+    if (!counted && ((axes >> axis & 1u) != 0 || ((axes & AXIS_XYZ) == 0 && i == 0))) {
       way[axis] = way[axis] == 0.0 ? length : math_square_root(length * length + way[axis] * way[axis]);
       counted = true;
     }
-    if (way[axis] != 0.0) moving |= bit;
     slice_pause();
   }
-  return moving;
 }
 
-static double feed_of(uint32_t cs, const struct path_move* m) {
+static struct feedrate feedrate_of(uint32_t cs, const struct path_move* m) {
   const double centripetal = m->is_arc ? cs_real(cs, ISX78_CENTRIPETAL_LIMIT) : 0.0;
-  if (!(centripetal > 0.0)) return plan_feed(cs, 0.0);
-  return plan_feed(cs, math_square_root(centripetal * circle_least_radius(&m->circle)));
+  if (!(centripetal > 0.0)) return plan_feedrate(cs, 0.0);
+  return plan_feedrate(cs, math_square_root(centripetal * circle_least_radius(&m->circle)));
 }
 
-static bool feed_time(uint32_t cs, const struct path_move* m, uint32_t moving, double* time) {
+bool plan_path_time(const struct path_move* m, double* time) {
   double way[AXIS_COUNT];
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) way[axis] = m->delta[axis];
-  if (m->is_arc) moving = arc_ways(&coordinate_systems[cs], m, moving, way);
+  if (m->is_arc) arc_ways(m, way);
   slice_pause();
-  return plan_feed_time(cs, way, moving, m->feed, time);
+  return plan_feed_time(&m->feedrate, way, time);
 }
 
 static void set_times(uint32_t cs, struct path_move* m, double time) {
   const double s_curve = cs_variable(cs, ISX88_S_CURVE_TIME);
   const double acceleration = plan_larger(cs_variable(cs, ISX87_ACCELERATION_TIME), s_curve + s_curve);
   slice_pause();
-  time = plan_larger(time, acceleration > 0.0 ? acceleration : LEAST_MS);
+  time = plan_larger(time, acceleration > 0.0 ? acceleration : PATH_LEAST_MS);
   path_set_times(m, time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS, acceleration, s_curve);
 }
 
 /* Directions at its ends. */
 static void set_corner(uint32_t cs, struct path_move* m) {
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) corner_move.delta[axis] = last_direction[axis] = m->delta[axis];
-  if (m->is_arc) {
-    circle_direction(&m->circle, 0.0, &corner_move.delta[AXIS_X]);
-    circle_direction(&m->circle, 1.0, &last_direction[AXIS_X]);
-  }
+  path_direction(m, 0.0, corner_move.delta);
+  path_direction(m, 1.0, last_direction);
   corner_move.is_sharp = false;
   corner_move.has_dwell = true;
   corner_plan(cs, &corner_move);
@@ -125,40 +116,25 @@ enum run_time_error plan_path(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct path_move* m = &planning;
   double time;
-  const uint32_t moving = plan_targets(cs, &corner_move, m->end);
+  plan_targets(cs, &corner_move, m->end);
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) m->delta[axis] = corner_move.delta[axis];
   const enum circle_kind kind = s->mode == MODE_LINEAR ? CIRCLE_STRAIGHT : find_circle(cs, m);
   if (kind == CIRCLE_IMPOSSIBLE) return RUN_TIME_RADIUS;
   m->is_arc = kind == CIRCLE_ARC;
   m->absolute = s->pending_axes & s->pending_absolute;
-  m->feed = s->time_mode ? 0.0 : feed_of(cs, m);
-  if (s->time_mode)
+  for (uint32_t axis = AXIS_A; axis <= AXIS_C; axis++) m->told[axis] = s->pending[axis];
+  m->timed = s->time_mode;
+  if (m->timed) {
     time = cs_real(cs, ISX89_FEEDRATE);
-  else if (!feed_time(cs, m, moving, &time))
-    return RUN_TIME_FEEDRATE;
+  } else {
+    m->feedrate = feedrate_of(cs, m);
+    if (!plan_path_time(m, &time)) return RUN_TIME_FEEDRATE;
+  }
   set_times(cs, m, time);
   set_corner(cs, m);
   slice_pause();
   push(cs, m);
   return RUN_TIME_NONE;
-}
-
-static void set_time_anew(uint32_t cs, struct path_move* m) {
-  const int64_t least = m->acceleration > 0 ? m->acceleration : path_time(LEAST_MS);
-  uint32_t moving = 0;
-  double time;
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
-    if (m->delta[axis] != 0.0) moving |= 1u << axis;
-  slice_pause();
-  if (!(m->feed > 0.0) || !feed_time(cs, m, moving, &time)) return;
-  const int64_t wanted = path_time(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS);
-  path_set_time(m, wanted > least ? wanted : least);
-}
-
-void plan_path_begin_at(uint32_t cs, double position[AXIS_COUNT]) {
-  uint32_t changed = path_begin_at(&paths[cs], position);
-  for (uint32_t i = 0; changed != 0; i++, changed >>= 1)
-    if ((changed & 1u) != 0) set_time_anew(cs, path_of(&paths[cs], i));
 }
 
 void plan_path_delay(uint32_t cs, double milliseconds) {
@@ -169,7 +145,6 @@ void plan_path_delay(uint32_t cs, double milliseconds) {
   }
   m->is_arc = m->sharp = false;
   m->absolute = 0;
-  m->feed = 0.0;
   m->dwells = true;
   set_times(cs, m, milliseconds);
   slice_pause();

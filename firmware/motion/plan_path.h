@@ -7,11 +7,13 @@
 #include <stdint.h>
 
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/path.h"
+
+#define PATH_LEAST_MS 0.5 /* of a move without acceleration time */
 
 bool plan_by_segments(uint32_t cs);         /* a line of LINEAR or CIRCLE is to be planned here */
 enum run_time_error plan_path(uint32_t cs); /* to the pending targets */
-/* Moves that have been planned and not begun: there, and in the time of their ways. It becomes where they end. */
-void plan_path_begin_at(uint32_t cs, double position[AXIS_COUNT]);
 void plan_path_delay(uint32_t cs, double milliseconds);
+bool plan_path_time(const struct path_move* m, double* time); /* ms, by F. False: that is none */
 
 #endif

@@ -10,7 +10,10 @@
 static double shortest(double way, double turn) {
   slice_pause();
   const double part = math_modulo(way, turn);
-  return part > turn / 2.0 ? part - turn : part;
+  slice_pause();
+  const double shorter = part > turn * 0.5 ? part - turn : part;
+  slice_pause();
+  return shorter;
 }
 
 double rollover_target(uint32_t motor, double from, double to, bool negative) {

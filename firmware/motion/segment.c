@@ -4,7 +4,7 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/lookahead_plan.h"
 #include "firmware/motion/path.h"
-#include "firmware/motion/plan_path.h"
+#include "firmware/motion/plan_anew.h"
 #include "firmware/motion/segment_points.h"
 #include "firmware/motion/segment_ring.h"
 #include "firmware/motion/segment_sequence.h"
@@ -73,7 +73,7 @@ void segment_start_of(uint32_t cs, double position[AXIS_COUNT]) {
 }
 
 void segment_begin_at(uint32_t cs, double position[AXIS_COUNT]) {
-  if (paths[cs].count != 0) plan_path_begin_at(cs, position);
+  if (paths[cs].count != 0) plan_anew(cs, position);
 }
 
 static bool work_at_once(uint32_t cs, bool alone) {

@@ -101,7 +101,7 @@ bool segment_points_begin(uint32_t cs) {
   q->looks = lookahead_begin(cs, (uint32_t)(period > 0 ? period : 1));
   for (uint32_t i = 0; q->looks && i + 1u < SPLINE_POINTS; i++) look_at_point(cs);
   q->made = false;
-  q->stops = q->one_move;
+  if (q->one_move) q->stops = true; /* a stop that has come meanwhile stays one */
   q->runs = true;
   return true;
 }

@@ -95,14 +95,23 @@ void system_motors_come_along(uint32_t cs) {
 void system_motor_stands_aside(uint32_t motor, int64_t by) { aside[motor] = (double)by; }
 
 /* The first motor that carries it alone tells the turn. */
-double system_motors_turn(uint32_t cs, uint32_t axis, double target) {
+double system_motors_turn(uint32_t cs, uint32_t axis, double from, double target) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   for (uint32_t motor = 0, left = axis <= AXIS_C ? s->motors : 0u; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0 || maps[motor].count != 1u || maps[motor].axis[0] != axis) continue;
     if (i_variable_read(i_motor_real(motor + 1u, IXX27_ROLLOVER)) == 0.0) return target;
+    slice_pause();
     const double scale = math_absolute(axis_definitions[motor].scale[axis]); /* directions are those of the axis */
     slice_pause();
-    return rollover_target(motor, s->position[axis] * scale, target * scale, target < 0.0) / scale;
+    const double counts = from * scale;
+    slice_pause();
+    const double told = target * scale;
+    slice_pause();
+    const double turned = rollover_target(motor, counts, told, target < 0.0);
+    slice_pause();
+    const double place = turned / scale;
+    slice_pause();
+    return place;
   }
   return target;
 }

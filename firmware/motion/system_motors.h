@@ -32,8 +32,9 @@ double system_motor_from(uint32_t motor, const double position[AXIS_COUNT]);
 double system_motor_aside(uint32_t motor); /* by which they differ */
 void system_motors_come_along(uint32_t cs);
 void system_motor_stands_aside(uint32_t motor, int64_t by); /* a limit has held it */
-/* Where an absolute move of a rotary axis goes that is told to go to `target` (motion/rollover.h); others as told. */
-double system_motors_turn(uint32_t cs, uint32_t axis, double target);
+/* Where an absolute move of a rotary axis from `from` goes that is told to go to `target` (motion/rollover.h); others
+ * as told. */
+double system_motors_turn(uint32_t cs, uint32_t axis, double from, double target);
 double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]);
 uint32_t system_motor_axes(uint32_t motor); /* those that move it */
 double system_motor_counts(uint32_t motor, int64_t distance);

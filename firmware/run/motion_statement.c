@@ -38,7 +38,7 @@ static void set_axis(uint32_t cs, uint32_t axis, double value) {
     s->pending[axis] = from + way;
     s->carry[axis] = way - (s->pending[axis] - from);
   } else {
-    s->pending[axis] = s->sets_position ? value : system_motors_turn(cs, axis, value);
+    s->pending[axis] = value;
     s->carry[axis] = 0.0;
   }
   s->pending_absolute = incremental ? s->pending_absolute & ~(1u << axis) : s->pending_absolute | 1u << axis;

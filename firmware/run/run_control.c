@@ -142,8 +142,8 @@ error_t run_start(uint32_t cs, bool single_step) {
   if (s->running) segment_order(cs, LOOKAHEAD_FORWARD);
   s->must_return = false;
   release_hold(cs);
-  if (s->running && single_step) { /* Q, but where the end has been calculated: then all of that is made */
-    if (s->continuous && !s->ended) run_quit(cs); /* while a step waits for its move, one more changes nothing */
+  if (s->running && single_step) {
+    if (s->continuous) run_quit(cs); /* while a step waits for its move, one more changes nothing */
     s->continuous = false;
     return ERR_NONE;
   }

@@ -107,38 +107,40 @@ TEST_F(LookaheadOrders, AnOrderThatMeetsTheLastPieceIsObeyed) {
   start(ticks_of(100));
   unsigned last = ticks_of(100);
   for (; segment_is_under_way(0); ++last) platform::servo_ticks(1);
-  unsigned backward = 0;
-  for (const char* order : {"<", "\\", ">", "H", "Q", "A", "S"})
+  // What can be seen of each: `<` goes back, `\\` and H stand on the path until `>`, Q and S ask for the motors'
+  // return;
+  // `>` has nothing to change.
+  for (const char order : {'<', '\\', '>', 'H', 'Q', 'A', 'S'}) {
+    unsigned orders = 0;
     for (unsigned before = 0; before < 3; ++before)
       for (unsigned at_pause = 1, pauses = 1; pauses >= at_pause; ++at_pause) {
-        SCOPED_TRACE(std::string(order) + " at pause " + std::to_string(at_pause) + ", " + std::to_string(before));
+        SCOPED_TRACE(std::string(1, order) + " at pause " + std::to_string(at_pause) + ", " + std::to_string(before));
         start(last - 1 - before);
         fake_task_run_servo();
         pauses = 0;
-        bool looks = false;
         platform::real_time_in_slices([&] {
           if (++pauses != at_pause) return;
-          looks = segment_looks(0);
+          ASSERT_TRUE(segment_looks(0) && run_is_running(0));
           ASSERT_EQ(host(std::string("&1") + order), "");
         });
         if (pauses < at_pause) break;
+        ++orders;
         wait_ms(600);
-        const bool back = *order == '<' && looks, aborted = *order == 'A';
-        backward += back;
-        if (back) {
-          ASSERT_EQ(motors[0].trajectory, 0);
-          ASSERT_TRUE(run_is_running(0));
-        }
-        if (aborted) {
-          ASSERT_FALSE(run_is_running(0));
-          continue;
-        }
-        if (run_is_running(0)) { ASSERT_EQ(host("&1>"), ""); }
+        const bool stands = order == '<' || order == '\\' || order == 'H';
+        ASSERT_EQ(run_is_running(0), stands);
+        if (order == '<') { ASSERT_EQ(motors[0].trajectory, 0); }
+        if (order == 'A') continue;
+        if (stands) { ASSERT_EQ(host("&1>"), ""); }
         wait_ms(600);
         ASSERT_EQ(motors[0].trajectory, 5000 * 3072);
         ASSERT_FALSE(run_is_running(0)) << "it begins anew";
+        if (order != 'Q' && order != 'S') continue;
+        ASSERT_EQ(host("#1J:100"), "");
+        wait_ms(500);
+        ASSERT_EQ(host("&1R"), "ERR017");
       }
-  EXPECT_GT(backward, 10u);
+    EXPECT_GT(orders, 10u) << order;
+  }
 }
 
 }  // namespace

@@ -84,6 +84,26 @@ TEST_F(PathsImage, ShortMovesPauseInTime) {
   EXPECT_LE(own.longest(), 500u) << own.longest_at();
 }
 
+// Arcs and turns that a stop has left, from another place: ways, times, corners are made anew (motion:7.1/8).
+TEST_F(PathsImage, WhatWaitsPausesInTime) {
+  accepted("I427=3000 I527=3000 I627=3000 I5183=.9");
+  start(2, "1",
+        {"F10 CIRCLE1 X1 Y1 Z-.3 I1 J0 ABS(Z,A,B,C) A1 B-.3 C-1", "U-1 V.5 X1 Y1 I1 J0 Z2 A2 B1 C1",
+         "X2 Y1 I1 J1 Z1 A1 B2 C-1"});
+  board.run_ms(60);
+  accepted("&1Q");
+  for (int i = 0; i < 50 && (std::stoul(board.send("??\r").substr(0, 6), nullptr, 16) & 1u) != 0; ++i) board.run_ms(20);
+  accepted("#1HMZ#2HMZ#3HMZ#4HMZ#5HMZ#6HMZ");
+  OwnCycles own(board, "plan_anew", "system_motors_turn", "corner_is_sharp");
+  accepted("&1R");
+  board.run_ms(20);
+  std::printf("%llu between two pauses at %s, %llu in all\n", static_cast<unsigned long long>(own.longest()),
+              own.longest_at().c_str(), static_cast<unsigned long long>(own.cycles()));
+  EXPECT_GE(own.points(), 3u);
+  EXPECT_GE(own.steps(), 1u);
+  EXPECT_LE(own.longest(), 500u) << own.longest_at();
+}
+
 TEST_F(PathsImage, ASegmentOfEightAxesWithCorners) {
   start(54, "1", kCorners);
   OwnCycles own(board, "segment_work", "lookahead_add", "limits_reach");

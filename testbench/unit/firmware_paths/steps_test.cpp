@@ -1,6 +1,10 @@
 // S (motion:5.6/5): a run ends as with Q, a step makes one move, one that waits behind a stop too.
 #include "testbench/unit/firmware_program/moving_motors.h"
 
+extern "C" {
+#include "firmware/motion/segment.h"
+}
+
 namespace {
 
 using namespace moving_motors;
@@ -101,6 +105,29 @@ TEST_F(Steps, BehindStepsRMakesTheRest) {
     }
 }
 
+// At every pause while R lets what waits begin: no more than the move that begins.
+TEST_F(Steps, AStopThatMeetsTheBeginIsObeyed) {
+  for (const Way& w : {kWays[2], kWays[5]})
+    for (const char* stop : {"&1Q", "&1/", "&1S"}) {
+      unsigned at_pause = 0;
+      for (bool begins = false; !begins && !HasFailure();) {
+        SCOPED_TRACE(std::string(w.name) + " " + stop + " at pause " + std::to_string(++at_pause));
+        const int made = stopped_by(w, "&1Q");
+        ASSERT_LT(made + 2, kMoves);
+        ASSERT_EQ(host("&1R"), "");
+        unsigned pauses = 0;
+        platform::real_time_in_slices([&] {
+          if (++pauses != at_pause) return;
+          begins = segment_is_under_way(0);
+          ASSERT_EQ(host(stop), "");
+        });
+        ASSERT_GE(pauses, at_pause);
+        if (!begins) { EXPECT_LE(stands(), made + 1); }
+      }
+      ASSERT_GT(at_pause, 20u) << "pauses of a begin";
+    }
+}
+
 // R makes a run of a step, of one that waits too.
 TEST_F(Steps, RWhileAStepMovesMakesTheRest) {
   for (const Way& w : kWays) {
@@ -128,44 +155,52 @@ TEST_F(Steps, FromProgramsToo) {
       platform::background(3);
       EXPECT_EQ(stands(), made);
     }
-    Lines lines = {"TM100 TA" + std::to_string(w.ta) + " TS0 INC", "X1", "CMD\"&1S\" X1"};
-    for (int i = 2; i < kMoves; ++i) lines.emplace_back("X1");
-    begin(w, "");
-    store(lines);
-    ASSERT_EQ(host("&1B1R"), "");
-    for (int i = 0; i < 40; ++i) {
-      go(5);
-      platform::background(3);
-    }
-    const int made = stands();
-    EXPECT_GE(made, 1);
-    EXPECT_LE(made, 5) << "what is calculated";
+    // it comes while the moves behind it are calculated
+    const auto stopped_by_line = [&](const std::string& order) {
+      Lines lines = {"TM100 TA" + std::to_string(w.ta) + " TS0 INC", "X1", "CMD\"" + order + "\" X1"};
+      for (int i = 2; i < kMoves; ++i) lines.emplace_back("X1");
+      begin(w, "");
+      store(lines);
+      EXPECT_EQ(host("&1B1R"), "");
+      for (int i = 0; i < 40; ++i) {
+        go(5);
+        platform::background(3);
+      }
+      return stands();
+    };
+    const int by_quit = stopped_by_line("&1Q");
+    if (std::string(w.prepare) == "I5113=5") { EXPECT_EQ(by_quit, 1) << "the executing move"; }
+    EXPECT_EQ(stopped_by_line("&1S"), by_quit);
     ASSERT_EQ(host("&1R"), "");
     EXPECT_EQ(stands(), kMoves);
   }
 }
 
-// The end of the program is calculated: behind Q the moves that wait are made and it does not begin anew; S changes
-// nothing of that (motion:5.6/6).
+// The end of the program is calculated: Q and S leave the same moves, R makes those and does not begin anew
+// (motion:5.6/6).
 TEST_F(Steps, NearTheEndItDoesNotBeginAnew) {
-  for (const Way& w : kWays)
-    for (const char* stop : {"&1Q", "&1S"}) {
-      unsigned left = 0;
-      for (int before = 4; before > 0; --before) {
+  for (const Way& w : kWays) {
+    unsigned left = 0;
+    for (int before = 4; before > 0; --before) {
+      int quit = 0;
+      for (const char* stop : {"&1Q", "&1S"}) {
         SCOPED_TRACE(std::string(w.name) + " " + stop + " " + std::to_string(before));
         begin(w);
         go(100 * (kMoves - before) - 20);
         const bool ended = cs().ended;
         ASSERT_EQ(host(stop), "");
         const int made = stands();
+        if (stop[2] == 'Q') quit = made;
+        EXPECT_EQ(made, quit);
         if (made == kMoves) continue;
         left += ended;
         ASSERT_EQ(host("&1R"), "");
         EXPECT_EQ(stands(), kMoves);
       }
-      const bool may = stop[2] == 'Q' && std::string(w.prepare).find("I5113=0") == std::string::npos;
-      EXPECT_EQ(left > 0, may) << "moves waited, and the end was calculated";
     }
+    const bool may = std::string(w.prepare).find("I5113=0") == std::string::npos;
+    EXPECT_EQ(left > 0, may) << "moves waited, and the end was calculated";
+  }
 }
 
 // Held, or stopped on its path in lookahead: S goes on and ends as Q would.

@@ -3,6 +3,11 @@
 #include "testbench/unit/firmware_paths/spline_path.h"
 #include "testbench/unit/firmware_program/moving_motors.h"
 
+extern "C" {
+#include "firmware/motion/path.h"
+#include "firmware/motion/segment.h"
+}
+
 namespace {
 
 using namespace moving_motors;
@@ -26,8 +31,8 @@ class WaitingMoves : public MovingMotors {
       ASSERT_EQ(host(line), "");
   }
   // A line at 10 a s to X1, then `lines`; stopped behind the first.
-  static void stop(Lines lines) {
-    lines.insert(lines.begin(), "F10 TA20 TS0 X1");
+  static void stop(Lines lines, const std::string& first = "X1") {
+    lines.insert(lines.begin(), "F10 TA20 TS0 " + first);
     store(lines);
     ASSERT_EQ(host("&1B1R"), "");
     platform::servo_ticks(ticks_of(60));
@@ -93,6 +98,128 @@ TEST_F(WaitingMoves, TakeTheTimeOfTheirWay) {
     run([&](double t) { ASSERT_NEAR(at(1), x.at(t), 5 / kUnit) << t; }, "&1R");
     expect_at({6000});
   }
+}
+
+// Feedrate, feedrate axes and units are those of its line, whatever has been set since. Y would take 4 s, 40 s by
+// Isx86.
+TEST_F(WaitingMoves, TakeTheTimeThatTheirLinesAskFor) {
+  const struct {
+    const char *before, *since;
+    double time;
+  } cases[] = {{"", "I5113=5", 300},   {"", "I5190=100", 300},       {"", "I5186=1", 300},
+               {"", "I5189=1", 300},   {"", "I5198=1", 300},         {"I5186=100", "I5186=0", 400},
+               {"I5186=100", "", 400}, {"I5186=100", "I5186=1", 400}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(std::string(c.before) + " " + c.since);
+    begin({"1000X", "500Y"});
+    ASSERT_EQ(host(c.before), "");
+    stop({"X3 Y40", "FRAX(X,Y) X4"}, "FRAX(X) X1");
+    ASSERT_EQ(host("#1HMZ"), "");
+    ASSERT_EQ(host(c.since), "");
+    platform::servo_ticks(5);
+    const auto made = [](double t, double time) { return (risen(t, 20, 0) - risen(t - time, 20, 0)) / time; };
+    const Spline x([&](double t) { return 3000 * made(t, c.time) + 1000 * made(t - c.time, 100); }, c.time + 120, 5);
+    const Spline y([&](double t) { return 20000 * made(t, c.time); }, c.time + 120, 5);
+    double worst = 0;
+    run([&](double t) { worst = std::max({worst, std::abs(at(1) - x.at(t)), std::abs(at(2) - y.at(t))}); }, "&1R");
+    EXPECT_LE(worst, 10 / kUnit);
+    expect_at({4000, 20000});
+  }
+}
+
+// A line that had no way, and has one now that its feedrate does not make: as the line would do, it is a run-time
+// error.
+TEST_F(WaitingMoves, WithoutAFeedrateAreARunTimeError) {
+  for (const char* none : {"F0", "F10 I5190=0"}) {
+    SCOPED_TRACE(none);
+    begin({"1000X"});
+    stop({std::string(none) + " X1", "F10 I5190=1000 X2"});
+    ASSERT_EQ(host("#1HMZ"), "");
+    platform::servo_ticks(5);
+    ASSERT_EQ(host("&1R"), "");
+    platform::servo_ticks(ticks_of(100));
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(cs().error, RUN_TIME_FEEDRATE);
+    expect_at({0});
+  }
+}
+
+// What a forward program rounds is no other way: the time stays as it is, to its last bit.
+TEST_F(WaitingMoves, KeepTheirTimesWhenAForwardProgramRounds) {
+  for (const char* line : {"X3", "CIRCLE1 X1 Y0 I1 J0"})
+    for (const bool rounds : {true, false}) {
+      SCOPED_TRACE(line);
+      begin({"1000X", "1000Y"});
+      kinematic({"I", "I"});
+      stop({line, "LINEAR X8"});
+      const std::int64_t time = path_of(&paths[0], 0)->time;
+      ASSERT_EQ(host(rounds ? "P10=0.000000001" : "P10=0.001"), "");
+      ASSERT_EQ(host("&1R"), "");
+      for (int i = 0; i < 20 && !segment_is_under_way(0); ++i) platform::servo_ticks(1);
+      ASSERT_TRUE(segment_is_under_way(0));
+      EXPECT_EQ(path_of(&paths[0], 0)->time == time, rounds);
+    }
+}
+
+// A rotary axis goes the way from where it is now, not to the turn that its target was in.
+TEST_F(WaitingMoves, TurnTheWayFromWhereTheyAre) {
+  const struct {
+    const char* turn;
+    Lines lines;
+    double end;
+  } programs[] = {{"4000", {"A2.5"}, -1500},
+                  {"4000", {"A2.5", "A1"}, -3000},
+                  {"4000", {"A2.5", "INC A2"}, 500},
+                  {"4000", {"INC A1", "ABS A0.5"}, 500},
+                  {"4000", {"INC A3"}, 3000},
+                  {"-4000", {"A-0.5"}, -3500},
+                  {"-4000", {"A0.5"}, 500},
+                  {"-4000", {"A-0.5", "A1"}, -3000},
+                  {"-4000", {"A1.005", "A0.5"}, 4500},
+                  {"0", {"A2.5", "A1"}, 1000}};
+  for (const auto& p : programs) {
+    SCOPED_TRACE(std::string(p.turn) + " " + p.lines.front() + " " + p.lines.back());
+    begin({"1000A"});
+    ASSERT_EQ(host(std::string("I128=160 I127=") + p.turn), "");
+    stop(p.lines, "A1");
+    ASSERT_EQ(host("#1HMZ"), "");
+    platform::servo_ticks(5);
+    go_on(10);
+    expect_at({p.end});
+  }
+}
+
+// Corners between them are judged by the ways that they go now: a reversal that has come is none to blend, one that has
+// gone is.
+TEST_F(WaitingMoves, BlendByTheWaysThatTheyGo) {
+  begin({"1000X"});
+  ASSERT_EQ(host("I5183=-0.5"), "");
+  stop({"X0.5", "X0.2"});
+  ASSERT_EQ(host("#1HMZ"), "");
+  platform::servo_ticks(5);
+  double farthest = 0;
+  run([&](double) { farthest = std::max(farthest, at(1)); }, "&1R");
+  EXPECT_EQ(farthest, 500);
+  expect_at({200});
+
+  begin({"1000X"});
+  ASSERT_EQ(host("I5183=-0.5 I5182=50"), "");
+  stop({"X0.5", "X0.8"});
+  ASSERT_EQ(host("#1HMZ"), "");
+  platform::servo_ticks(5);
+  const Spline x([&](double t) { return 10 * (risen(t, 20, 0) - risen(t - 80, 20, 0)); }, 100, 5);
+  double worst = 0;
+  run([&](double t) { worst = std::max(worst, std::abs(at(1) - x.at(t))); }, "&1R");
+  EXPECT_LE(worst, 10 / kUnit);
+  expect_at({800});
+
+  begin({"1000X"});
+  ASSERT_EQ(host("I5183=-0.5 I5192=1"), "") << "nothing blends";
+  stop({"X0.5", "X0.8"});
+  ASSERT_EQ(host("#1HMZ"), "");
+  platform::servo_ticks(5);
+  EXPECT_NEAR(run([](double) {}, "&1R"), 50 + 30 + 2 * (20 + 10), 6);
+  expect_at({800});
 }
 
 // The arc keeps its shape, in its plane (X goes to Z about -Y); what its end is beside that goes evenly.
