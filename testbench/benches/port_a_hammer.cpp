@@ -50,7 +50,7 @@ class PortAHammer {
     }
     words_.push_back({regs::board_latches::kHostSignals.address, true, 0, 0xF, 0});
     registers_ = static_cast<unsigned>(words_.size());
-    for (unsigned i = 0; i < 2 * regs::kDpramSize; ++i)
+    for (unsigned i = 0; i < b_.board.dpram_words; ++i)
       words_.push_back({regs::kDpramBase + i / 2, i % 2 != 0, 4, 0xFFFF, 0});
   }
 
@@ -84,7 +84,7 @@ class PortAHammer {
   // Half of all cycles are at words that another one has just been at, too.
   std::size_t any() {
     std::size_t& recent = recent_[below(static_cast<unsigned>(recent_.size()))];
-    if (below(2) == 0) recent = below(2) == 0 ? below(registers_) : registers_ + below(2 * regs::kDpramSize);
+    if (below(2) == 0) recent = below(2) == 0 ? below(registers_) : registers_ + below(b_.board.dpram_words);
     return recent;
   }
 
@@ -130,7 +130,7 @@ class PortAHammer {
     for (std::size_t i = registers_; i < words_.size(); ++i) check(same, words_[i], kFastest);
     driver_.rest();
     d(same);
-    b_.report.step("every word of the RAM", same, 2 * regs::kDpramSize, fmt::format("{} words", same.made()));
+    b_.report.step("every word of the RAM", same, b_.board.dpram_words, fmt::format("{} words", same.made()));
   }
 
   // Of ours as many wait states as host-bus:2.5 has, or up to 8 more.
