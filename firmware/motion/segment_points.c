@@ -89,6 +89,7 @@ bool segment_points_begin(uint32_t cs) {
   for (uint32_t i = 0; i < SPLINE_POINTS; i++) add_points(cs, &(struct path_point){.count = 0});
   system_motors_come_along(cs);
   slice_pause();
+  path_of(&paths[cs], 0)->change = path_of(&paths[cs], 0)->acceleration; /* it blends with nothing before it now */
   q->time = path_begins(&paths[cs], 0);
   set_move(cs, 0);
   set_move(cs, 0);

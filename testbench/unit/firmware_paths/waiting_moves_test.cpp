@@ -60,6 +60,31 @@ class WaitingMoves : public MovingMotors {
   }
 };
 
+// What was to blend with the move before the stop begins from rest, in its own TA: with TS 0 half of the speed after
+// half of it.
+TEST_F(WaitingMoves, BeginInTheirOwnTime) {
+  begin({"1000X"});
+  store({"INC TA100 TS0 TM100 X1", "TA300 TM400 X4"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(40));
+  ASSERT_EQ(host("&1Q"), "");
+  platform::servo_ticks(ticks_of(300));
+  ASSERT_EQ(motors[0].trajectory, 1000 * 3072);
+  ASSERT_TRUE(segment_is_left(0));
+  double before = at(1), ms = 0, begun = -1, half = -1;
+  run(
+      [&](double) {
+        ms += kTickMs;
+        const double speed = (at(1) - before) / kTickMs;
+        before = at(1);
+        if (begun < 0 && speed > 0) begun = ms;
+        if (half < 0 && speed >= 5) half = ms;
+      },
+      "&1R");
+  EXPECT_NEAR(half - begun, 150, 5);  // a segment
+  EXPECT_EQ(motors[0].trajectory, 5000 * 3072);
+}
+
 // Home where it stands: an axis goes to its absolute place from there, or by its distance; one that no line names stays
 // at the place that has another name now.
 TEST_F(WaitingMoves, GoToAbsolutePlacesAndByDistances) {
