@@ -134,7 +134,7 @@ def build(rules, solvers, fault=None):
         sources[edit.file] = solvers.out / f"{stem}.{pathlib.Path(edit.file).name}"
         sources[edit.file].write_text(text.replace(edit.old, edit.new))
     labels = [fault.rule] if fault else [*rules.english, *rules.covers]
-    (solvers.out / "cover.v").write_text(COVER)
+    (solvers.out / f"{stem}.cover.v").write_text(COVER)  # other proofs are made beside this one
     expose = "setundef -undriven -expose;" if rules.free else ""  # what is free has a name in traces
     script = [f"read_verilog -sv -formal -defer {' '.join(map(str, sources.values()))}",
               f"read_verilog -sv -formal {rules.root / rules.path}; hierarchy -check -top {rules.name}_rules",
@@ -142,7 +142,7 @@ def build(rules, solvers, fault=None):
               "proc -norom; setattr -mod -unset keep_hierarchy; flatten",
               f"{expose} setundef -undriven -anyseq; {PREPARE[rules.clocks]}; opt_clean",
               f"write_smt2 -wires {stem}.smt2",
-              "techmap -map cover.v; techmap; abc -g AND -fast; opt_clean; design -save m"]
+              f"techmap -map {stem}.cover.v; techmap; abc -g AND -fast; opt_clean; design -save m"]
     for label in labels:
         script.append(f"design -load m; delete t:$assert */{label} %d; opt_clean; "
                       f"write_aiger -zinit -no-startoffset -map {stem}.{label}.aim {stem}.{label}.aig")
