@@ -55,7 +55,6 @@ static void keep_high_time(void) {
 void buffer_request_initialize(void) {
   request.high = request.fixed_open = false;
   hal_host_signals(0, HAL_SIGNAL_BREQ);
-  request.changed = hal_cycles();
   request.on = i_integer(I16_ROTARY_REQUEST_ON);
   request.off = i_integer(I17_ROTARY_REQUEST_OFF);
   request.fixed = i_integer(I18_FIXED_BUFFER_WARNING);

@@ -167,7 +167,7 @@ void fixed_program_close(void) {
 bool fixed_program_restore(enum fixed_kind kind, uint32_t number, uint32_t words) {
   static const uint32_t limits[FIXED_KINDS] = {FIXED_PROG_LIMIT + 1, FIXED_PLC_COUNT, COORDINATE_SYSTEMS,
                                                COORDINATE_SYSTEMS};
-  if ((uint32_t)kind >= FIXED_KINDS || number >= limits[kind] || words == 0 || words > USER_MEMORY_WORDS) return false;
+  if (number >= limits[kind] || words == 0 || words > USER_MEMORY_WORDS) return false;
   if (!has_room(kind) || fixed_program_find(kind, number) != 0) return false;
   if (region_resize_fixed(top() + words) != ERR_NONE) return false;
   enter(kind, number, words);

@@ -23,10 +23,7 @@ enum links program_links_make(const struct fixed_program* program) {
   error_t error = ERR_NONE;
   if (program->linked) return LINKS_MADE;
   program_structure_begin(&structure, links);
-  while (error == ERR_NONE && program_links_line(&structure, program, &error) != 0) {
-    slice_pause();
-    if (fixed_programs_generation() != generation) break;
-  }
+  while (error == ERR_NONE && program_links_line(&structure, program, &error) != 0) {}
   if (fixed_programs_generation() != generation) return LINKS_MOVED;
   if (error != ERR_NONE || structure.depth != 0) return LINKS_BAD;
   fixed_program_set_linked(program);

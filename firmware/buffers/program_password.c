@@ -9,7 +9,7 @@ static struct {
 } password;
 
 static void set(const char* text, uint32_t length) {
-  password.length = length < PASSWORD_LENGTH ? length : PASSWORD_LENGTH;
+  password.length = length;
   __builtin_memcpy(password.text, text, password.length);
 }
 

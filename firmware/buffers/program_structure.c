@@ -80,11 +80,11 @@ static error_t condition(struct program_structure* s, const struct instruction* 
 static error_t condition_part(struct program_structure* s, const struct instruction* in, bool alone, struct scan* scan,
                               struct place place) {
   error_t error = ERR_NONE;
-  if (in->group == CONDITION_AND || in->group == CONDITION_OR) {
+  if (in->group < CONDITION_AND) {
+    error = condition(s, in, alone, scan, place);
+  } else if (in->group == CONDITION_AND || in->group == CONDITION_OR) {
     if (!s->condition_may_follow) return ERR_STRUCTURE;
     link(s, s->condition, LINK_CONTINUES);
-  } else if (in->group < CONDITION_AND) {
-    error = condition(s, in, alone, scan, place);
   }
   s->condition = place.at;
   if (s->condition_opened && s->depth != 0) s->blocks[s->depth - 1u].at = (uint16_t)place.at;

@@ -24,7 +24,6 @@ static void reset(uint32_t cs) {
   ring->generation++;
   ring->write = ring->read = 0;
   ring->used = ring->lines = 0;
-  ring->full = false;
   show(cs);
 }
 

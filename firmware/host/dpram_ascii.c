@@ -97,16 +97,16 @@ static bool take_piece(void) {
 }
 
 static void execute(void) {
+  const uint32_t kept = length < LINE_LIMIT ? length : LINE_LIMIT;
   error_t error = ERR_NONE;
+  line.sent[kept] = line.upper[kept] = '\0';
   begin_answer();
   if (bad_character)
     error = ERR_CHARACTER;
   else if (length > LINE_LIMIT)
     error = ERR_DATA;
-  else {
-    line.sent[length] = line.upper[length] = '\0';
+  else
     error = command_line(line.upper);
-  }
   executed = true;
   if (reply_line_is_open()) reply_end_line();
   if (error != ERR_NONE) reply_error(error);
@@ -114,7 +114,8 @@ static void execute(void) {
 }
 
 const char* dpram_ascii_as_typed(const char* at) {
-  return at < line.upper || at > line.upper + LINE_LIMIT ? at : &line.sent[at - line.upper];
+  const uintptr_t offset = (uintptr_t)at - (uintptr_t)line.upper;
+  return offset > LINE_LIMIT ? at : &line.sent[offset];
 }
 
 static void command_pass(void) {
@@ -130,7 +131,6 @@ static void command_pass(void) {
 /* Control characters ----------------------------------------------------------------------------------------------- */
 
 static void report_last_line(void) {
-  line.sent[length < LINE_LIMIT ? length : LINE_LIMIT] = '\0';
   reply_text(executed ? line.sent : "");
   reply_end_line();
 }
@@ -159,7 +159,7 @@ static void end(void) {
 
 void dpram_ascii_pass(void) {
   if (!is_enabled()) {
-    if (on) end();
+    end();
     return;
   }
   if (!on) begin();

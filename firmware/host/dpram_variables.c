@@ -57,16 +57,19 @@ static uint32_t value(const struct entry* e) {
   return e->width == WORD_BITS ? (uint32_t)hal_signed(word) : word >> e->lsb & mask_of(e);
 }
 
+static uint32_t item(const struct entry* e) {
+  if (!is_in_ram(e)) return 0;
+  const uint32_t low = word_read(false, e->address);
+  return low | word_read(true, e->address) << 16;
+}
+
 static void show(const struct entry* e, uint32_t data) {
   if (e->space == SPACE_LONG) {
     uint32_t x, y;
     word_read_long(e->address, &x, &y);
     dpram_put_long(data, x, y);
-  } else if (e->space == SPACE_DPRAM) {
-    const uint32_t low = is_in_ram(e) ? word_read(false, e->address) : 0u;
-    dpram_write_item(data, is_in_ram(e) ? low | word_read(true, e->address) << 16 : 0u);
   } else {
-    dpram_write_item(data, value(e));
+    dpram_write_item(data, e->space == SPACE_DPRAM ? item(e) : value(e));
   }
 }
 

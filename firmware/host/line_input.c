@@ -94,9 +94,10 @@ static void execute(void) {
 
 const char* line_input_as_typed(const char* at) {
   struct text* const line = &texts[current ^ 1u];
-  if (at < line->upper || at > line->upper + LINE_LIMIT) return at;
+  const uintptr_t offset = (uintptr_t)at - (uintptr_t)line->upper;
+  if (offset > LINE_LIMIT) return at;
   line->sent[last_length] = '\0';
-  return &line->sent[at - line->upper];
+  return &line->sent[offset];
 }
 
 /* Text in quotes keeps its case. */
@@ -166,10 +167,7 @@ static bool character(uint8_t c) {
     execute();
     return true;
   }
-  if (c >= ' ') {
-    (void)add(&c, 1);
-    return false;
-  }
+  if (add(&c, 1) != 0u) return false;
   switch (c) {
     case LINE_FEED:
       break;

@@ -17,8 +17,8 @@ struct program_text {
 };
 
 struct text_queue {
-  uint8_t bytes[TEXT_QUEUE_BYTES];
   volatile uint32_t head, tail;
+  uint8_t bytes[TEXT_QUEUE_BYTES];
 };
 
 void text_queue_empty(struct text_queue* queue);                              /* background */
