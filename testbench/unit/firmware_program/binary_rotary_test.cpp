@@ -191,7 +191,59 @@ TEST_F(BinaryRotary, NothingOfABegunLineSurvivesClearOrDelete) {
   }
 }
 
-// LIST ROT looks at words whose place the real-time task would use again.
+// host-bus:7.3/7: what stands there when the header is enabled again is another line.
+TEST_F(BinaryRotary, NothingOfABegunLineSurvivesADisabledHeader) {
+  open("DEF ROT 5");
+  Buffer buffer;
+  buffer.set_up();
+  buffer.put("P4=4 P5=5 P6=6");
+  const std::uint32_t begun = buffer.index;
+  buffer.put("P1=1 P2=2 P3=3");
+  pass();  // two words of it stand in free space
+  ASSERT_EQ(buffer.status(), kBusy);
+  buffer.write(DPRAM_ROTARY_ENABLE, 0);
+  pass();
+  buffer.index = begun;
+  buffer.put("P1=7 P2=8 P3=9");
+  buffer.write(DPRAM_ROTARY_ENABLE, 1);
+  ASSERT_EQ(host("B0 R"), "");
+  for (int i = 0; i < 3; ++i) {
+    period();
+    pass();
+  }
+  EXPECT_EQ(host("P1..6"), "7|8|9|4|5|6");
+  EXPECT_EQ(buffer.status(), 0u);
+}
+
+// host-bus:7.2/7, also of a host that is there again before the first pass.
+TEST_F(BinaryRotary, NothingOfABegunLineSurvivesAReset) {
+  for (const unsigned cs : {1u, 2u, 16u}) {
+    platform::power_up();
+    SetUp();
+    const std::string define = "&" + std::to_string(cs) + "DEF ROT 5";
+    ASSERT_EQ(host("I68=15"), "");
+    open(define);
+    Buffer buffer;
+    buffer.cs = cs;
+    buffer.set_up();
+    buffer.put("X1 Y1 Z1");
+    const std::uint32_t begun = buffer.index;
+    buffer.put("P1=1 P2=2 P3=3");
+    pass();
+    ASSERT_EQ(buffer.status(), kBusy);
+    platform::reset();
+    period();
+    ASSERT_EQ(host("I68=15"), "");
+    open(define);
+    buffer.set_up();
+    buffer.write(DPRAM_ROTARY_PMAC_INDEX, begun);
+    buffer.index = begun;
+    buffer.put("P1=7 P2=8 P3=9");
+    pass();
+    EXPECT_EQ(host("LIST ROT"), "P1=7P2=8P3=9") << "&" << cs;
+  }
+}
+
 // Text goes where the begun line stands: it is copied again from its first command.
 TEST_F(BinaryRotary, TextBetweenTheHalvesOfALineLeavesItWhole) {
   open("&1 DEF ROT 4");
@@ -212,6 +264,7 @@ TEST_F(BinaryRotary, TextBetweenTheHalvesOfALineLeavesItWhole) {
   EXPECT_EQ(host("Q"), "");
 }
 
+// LIST ROT looks at words whose place the real-time task would use again.
 TEST_F(BinaryRotary, NothingComesInWhileAListingIsMade) {
   open("DEF ROT 30");
   Buffer buffer;

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/fake_hal.h"
 #include "testbench/unit/firmware_program/platform.h"
 #include "testbench/unit/random_seed.h"
 
@@ -275,6 +276,39 @@ TEST_F(BufferRequest, HighAtLeastOneMicrosecondBetweenPulses) {
   for (int i = 0; i < 5; ++i) ASSERT_EQ(host("P1=1"), "");  // no time passes between the lines
   ASSERT_EQ(edges().size(), 10u);
   for (std::size_t i = 2; i < edges().size(); i += 2) EXPECT_GE(edges()[i].us - edges()[i - 1].us, 0.9999);
+}
+
+// host-bus:5.7/16: the other signals of the latch are others'.
+TEST_F(BufferRequest, OnlyItsOwnSignalMoves) {
+  constexpr std::uint32_t kOthers = HAL_SIGNAL_IPOS | HAL_SIGNAL_EROR | HAL_SIGNAL_F1ER;
+  for (const std::uint32_t others : {kOthers, 0u}) {
+    open("DEL ROT DEF ROT 50");
+    hal_host_signals(others, kOthers & ~others);
+    for (const unsigned lines : {1u, 9u}) {
+      store(lines);
+      EXPECT_EQ(fake_hal_signals() & kOthers, others);
+    }
+    ASSERT_FALSE(breq());
+    ASSERT_EQ(host("CLEAR"), "");
+    ASSERT_TRUE(breq());
+    EXPECT_EQ(fake_hal_signals() & kOthers, others);
+    buffer_request_initialize();
+    EXPECT_FALSE(breq());
+    EXPECT_EQ(fake_hal_signals() & kOthers, others);
+    EXPECT_EQ(buffer_request_selected(), 0u) << "of the host; no panel";
+    ASSERT_EQ(host("CLOSE"), "");
+  }
+}
+
+// host-bus:5.7/7 is about pulses: while the pin is low there is nothing to wait for.
+TEST_F(BufferRequest, LinesOfAFullBufferTakeNoTime) {
+  limits(0, 1);
+  open();
+  ASSERT_EQ(host("P1=1"), "");
+  ASSERT_FALSE(breq());
+  const std::uint64_t then = hal_long_cycles();
+  for (int i = 0; i < 5; ++i) ASSERT_EQ(host("P1=1"), "");
+  EXPECT_EQ(hal_long_cycles(), then);
 }
 
 TEST_F(BufferRequest, RealTimeTaskIsHeldOffForMicrosecondsOnly) {

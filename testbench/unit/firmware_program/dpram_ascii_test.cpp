@@ -7,6 +7,7 @@
 
 extern "C" {
 #include "firmware/host/dpram_ascii.h"
+#include "firmware/host/dpram_responses.h"
 #include "firmware/variables/pq_variables.h"
 #include "rtl/regs/brick_regs.h"
 }
@@ -213,6 +214,27 @@ TEST_F(DpramAscii, ControlCharactersActAndAreCleared) {
   EXPECT_EQ(released(), (Lines{"000D ABCDEFDEF", "0006 "})) << "^E";
 }
 
+// host-bus:6.6/3, firmware:5.9/25: what was executed, or refused, as far as a line goes.
+TEST_F(DpramAscii, ControlYReportsTheLineAsItCame) {
+  const auto last = [this] {
+    EXPECT_TRUE(ram_host.control(0x19));
+    return released();
+  };
+  EXPECT_EQ(last(), (Lines{"000D ", "0006 "})) << "there was none";
+  EXPECT_EQ(ram_host.ask("p1=5 ;Ab\r\n"), "");
+  EXPECT_EQ(last(), (Lines{"000D p1=5 ;Ab", "0006 "}));
+  EXPECT_EQ(ram_host.ask("P1"), "5");
+  EXPECT_EQ(last(), (Lines{"000D P1", "0006 "})) << "nothing of the longer one";
+  EXPECT_EQ(ram_host.ask("P1=\xC4"), "ERR004");
+  EXPECT_EQ(last(), (Lines{"000D P1=\xC4", "0006 "}));
+  for (const unsigned length : {254U, 255U, 256U, 2000U}) {
+    const std::string line = "P1=" + std::to_string(length % 10) + std::string(length - 5, ' ') + "~";
+    EXPECT_EQ(ram_host.ask(line), "ERR003") << length;
+    EXPECT_EQ(last(), (Lines{"000D " + line.substr(0, 255), "0006 "})) << length;
+  }
+  EXPECT_EQ(ram_host.ask("P1"), "5") << "255 characters";
+}
+
 TEST_F(DpramAscii, ControlXForgetsWhatWaits) {
   ASSERT_TRUE(ram_host.send("P1..5"));
   background(3);
@@ -290,6 +312,28 @@ TEST_F(DpramAscii, AnAnswerThatNoQueueHoldsIsCutAndEndsWithAnError) {
   EXPECT_EQ(ram_host.ask("P1=5 P1"), "5");
 }
 
+// host-bus:6.6/9: 256 KiB are 1016 lines of 255 characters with three bytes each before them, 13 bytes for one of 10,
+// and three for the end.
+TEST_F(DpramAscii, AnAnswerIsCutWhereTheQueueIsFull) {
+  static_assert(1016 * (3 + 255) + (3 + 10) + 3 == 256 * 1024);
+  const auto letter = [](unsigned line) { return static_cast<char>('A' + line % 26); };
+  for (const unsigned last : {10u, 11u, 255u}) {
+    const auto put = [](char c, unsigned count) {
+      for (unsigned i = 0; i < count; ++i) dpram_responses_put(DPRAM_RESPONSE_LINE, static_cast<std::uint8_t>(c));
+      dpram_responses_end(DPRAM_RESPONSE_LINE);
+    };
+    for (unsigned line = 0; line < 1016; ++line) put(letter(line), 255);
+    put('z', last);
+    dpram_responses_end(DPRAM_RESPONSE_ACKNOWLEDGE);
+    Lines expected;
+    for (unsigned line = 0; line < 1016; ++line) expected.push_back("000D " + std::string(255, letter(line)));
+    if (last == 10) expected.push_back("000D " + std::string(10, 'z'));
+    expected.emplace_back(last == 10 ? "0006 " : "8006 ");
+    EXPECT_EQ(released(), expected) << last;
+    EXPECT_EQ(ram_host.ask("P1=5 P1"), "5");
+  }
+}
+
 // A host that never reads: its next command waits, nobody else.
 TEST_F(DpramAscii, AHostThatDoesNotReadHoldsUpItselfOnly) {
   ASSERT_TRUE(ram_host.send("P0..999"));
@@ -299,9 +343,12 @@ TEST_F(DpramAscii, AHostThatDoesNotReadHoldsUpItselfOnly) {
   EXPECT_EQ(host("P1 P2"), "0|20");
   once({"SENDR\"for the ram\"", "SENDP\"for the port\""});
   EXPECT_EQ(sent(), "") << "the port's text stands behind the other";
-  platform::pass_us(600'000);
+  fake_hal_pass(500 * hal_cycles_per_ms() - hal_cycles_per_ms() / 4);
   background(3);
-  EXPECT_EQ(sent(), "for the port\r") << "half a second later the other is dropped";
+  EXPECT_EQ(sent(), "") << "not yet half a second";
+  fake_hal_pass(hal_cycles_per_ms() / 2);
+  background(3);
+  EXPECT_EQ(sent(), "for the port\r") << "half a second: the other is dropped";
   const brick::Reply reply = ram_host.finish(DpramHost::kPasses);
   EXPECT_EQ(reply.lines.size(), 1000U);
   EXPECT_TRUE(ram_host.finish(DpramHost::kPasses).complete);

@@ -161,6 +161,27 @@ TEST_F(DpramReportsTest, TheForegroundWins) {
   EXPECT_EQ(ram.read(DPRAM_MOTOR_TIMER), first + 4) << "by the background again";
 }
 
+// What the background has begun is whole before the servo task begins its own.
+TEST_F(DpramReportsTest, TheForegroundComesBehindASetOfTheBackground) {
+  reports.choose_motors(0xFF);  // four parts
+  for (const int period : {1, 2, 255}) {
+    ASSERT_EQ(host("I48=0 I57=0 I50=255 I47=" + std::to_string(period)), "");
+    servo_ticks(1);
+    background(1);
+    ASSERT_EQ(host("I57=1"), "");
+    background(1);
+    ASSERT_EQ(host("I48=1"), "");
+    servo_ticks(3);
+    EXPECT_FALSE(ready()) << period;
+    background(3);
+    EXPECT_TRUE(ready()) << period;
+    const std::uint32_t now = servo_count() & 0xFFFF;
+    servo_ticks(4);
+    EXPECT_TRUE(ready()) << period;
+    EXPECT_EQ(ram.read(DPRAM_MOTOR_TIMER), now + 1) << period;
+  }
+}
+
 TEST_F(DpramReportsTest, SystemsShowWhatCommandsReport) {
   for (const char* line : {"&2DEF ROT 100", "&1DEF ROT 100", "&2B0", "&1B0", "OPEN ROT", "&2F250 X10Y-2.5", "X20",
                            "X30", "&1TM20 INC A3", "CLOSE", "&2%50", "&2R"})

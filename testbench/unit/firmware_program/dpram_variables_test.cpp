@@ -193,6 +193,28 @@ TEST_F(DpramVariables, ItemsOfTheRamAreNowhereElse) {
   EXPECT_EQ(data(1, 0), 0U);
 }
 
+// host-bus:6.1/3: the first item of the RAM and the last, and what stands beside them.
+TEST_F(DpramVariables, ItemsAreInTheRamFromItsFirstToItsLast) {
+  const struct {
+    unsigned address;
+    bool is_in;
+  } items[] = {{0x5FFFF, false}, {0x60000, true}, {0x63FFF, true}, {0x64000, false}, {0x70010, false}};
+  for (const auto& item : items) {
+    const std::string address = std::to_string(item.address);
+    ASSERT_EQ(host("WY" + address + ",$12 WX" + address + ",$34"), "");
+    const std::string before = host("RHY" + address + " RHX" + address);
+    dpram_write_item(place(kRead, 1), 0x5555);
+    entry(place(kRead, 0), item.address, kDpram);
+    begin(1);
+    background(1);
+    ASSERT_TRUE(ready());
+    EXPECT_EQ(data(1, 0), item.is_in ? 0x340012U : 0U) << std::hex << item.address;
+    write_entry(0, item.address, kDpram, 0x00560078);
+    write(1);
+    EXPECT_EQ(host("RHY" + address + " RHX" + address), item.is_in ? "78|56" : before) << std::hex << item.address;
+  }
+}
+
 // What was read before I55 went off is not of the set that is ready after it.
 TEST_F(DpramVariables, ASetThatWasLeftBeginsAnew) {
   for (unsigned i = 0; i < 20; ++i) entry(place(kRead, i), 0xA000, kY);

@@ -114,6 +114,55 @@ TEST_F(FixedBuffer, ThereAre224MotionPrograms) {
   EXPECT_EQ(host("OPEN PLC 1 P1=1 CLOSE"), "");
 }
 
+// With the 32 PLCs and both kinematic programs of 16 systems that is all. The lowest goes above them when it is opened.
+TEST_F(FixedBuffer, EachProgramKeepsItsLinesWhenAllAreThere) {
+  std::vector<std::string> names;
+  for (int i = 1; i <= 224; ++i) names.push_back("PROG " + std::to_string(i));
+  for (int i = 0; i < 32; ++i) names.push_back("PLC " + std::to_string(i));
+  ASSERT_EQ(host("I68=15"), "");
+  const auto line = [](std::size_t i) { return "P" + std::to_string(i) + "=1"; };
+  const auto kinematic = [&](const std::string& what) {
+    std::string all;
+    for (int cs = 1; cs <= 16; ++cs)
+      for (const char* kind : {" FORWARD", " INVERSE"})
+        all += host("&" + std::to_string(cs) + what + kind + (what == "OPEN" ? " P1=1 CLOSE" : "")) + "/";
+    return all;
+  };
+  for (std::size_t i = 0; i < names.size(); ++i) ASSERT_EQ(host("OPEN " + names[i] + " " + line(i) + " CLOSE"), "");
+  std::string nothing, lines;
+  for (int i = 0; i < 32; ++i) nothing += "/", lines += "P1=1/";
+  ASSERT_EQ(kinematic("OPEN"), nothing);
+  for (int turn = 0; turn < 3; ++turn) {
+    ASSERT_EQ(host("OPEN " + names[static_cast<std::size_t>(turn)] + " P9=9 CLOSE"), "");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const bool added = i <= static_cast<std::size_t>(turn);
+      ASSERT_EQ(host("LIST " + names[i]), line(i) + (added && i < 224 ? "|P9=9" : "")) << names[i];
+    }
+    EXPECT_EQ(kinematic("LIST"), lines);
+  }
+}
+
+// What a damaged store says of a program is no program: numbers of firmware:4.1, words that there are.
+TEST_F(FixedBuffer, NothingIsRestoredThatCannotBe) {
+  const struct {
+    fixed_kind kind;
+    unsigned number, words;
+    bool is_one;
+  } cases[] = {{FIXED_PROG, 32768, 1, false}, {FIXED_PROG, 32767, 1, true},  {FIXED_PROG, 32767, 1, false},
+               {FIXED_PLC, 32, 1, false},     {FIXED_PLC, 31, 2, true},      {FIXED_FORWARD, 16, 1, false},
+               {FIXED_FORWARD, 15, 1, true},  {FIXED_INVERSE, 16, 1, false}, {FIXED_INVERSE, 15, 1, true},
+               {FIXED_PROG, 5, 0, false},     {FIXED_PROG, 5, 26625, false}, {FIXED_PROG, 5, 0xFFFFFFFF, false},
+               {FIXED_PROG, 5, 26620, false}, {FIXED_PROG, 5, 26619, true}};
+  unsigned count = 0, words = 0;
+  for (const auto& c : cases) {
+    EXPECT_EQ(fixed_program_restore(c.kind, c.number, c.words), c.is_one) << c.number << " " << c.words;
+    count += c.is_one ? 1 : 0;
+    words += c.is_one ? c.words : 0;
+    EXPECT_EQ(fixed_programs_count(), count);
+    EXPECT_EQ(host("SIZE"), std::to_string(26624 - words));
+  }
+}
+
 // Every second one is emptied, the others are closed without a line.
 TEST_F(FixedBuffer, EmptyProgramsTakeNoPlace) {
   for (int i = 1; i <= 300; ++i)
@@ -234,6 +283,36 @@ TEST_F(FixedBuffer, StructureOfMotionPrograms) {  // firmware:6.4
     EXPECT_EQ(host("CLOSE"), c.close) << c.lines[0] << " .. " << c.lines.back();
     EXPECT_EQ(host("CLOSE"), "") << "it was closed all the same";
   }
+}
+
+// firmware:6.4: AND, OR and ELSE are of the condition right before them, whatever stands between.
+TEST_F(FixedBuffer, AnyStatementEndsACondition) {
+  for (const std::string text :
+       {"X1",    "X(P1)",     "F5",     "F(P1)",         "P1=2",      "P1=P2",   "P1=0.1", "P(P1)=P2",
+        "M1==2", "M(P1)==P2", "DWELL1", "DWELL(P1)",     "ABS(X)",    "FRAX(X)", "LINEAR", "NORMAL K-1",
+        "HOME1", "N10",       "GOSUB5", "DISABLE PLC 3", "SEND\"A\"", "WAIT"}) {
+    ASSERT_EQ(host("OPEN PROG 1 CLEAR"), "");
+    EXPECT_EQ(host("IF(P1=1)" + text + " AND(P2=2)"), "ERR009") << text;
+    EXPECT_EQ(host("IF(P1=1)" + text + " OR(P2=2)"), "ERR009") << text;
+    EXPECT_EQ(host("IF(P1=1)AND(P2=2)OR(P3=3)" + text), "") << text;
+    EXPECT_EQ(host(text + " ELSE X2"), "ERR009") << text;
+    EXPECT_EQ(host("ELSE " + text), "") << text;
+    EXPECT_EQ(host("CLOSE"), "") << text;
+  }
+}
+
+// A block begins with a line of its own: behind a condition of one line there is none.
+TEST_F(FixedBuffer, NoBlockBeginsBehindAConditionOfItsLine) {
+  for (const std::string first :
+       {"IF(P1=1)", "WHILE(P1=1)", "IF(P1=1)AND(P2=2)", "IF(P1=1)X1 ", "WHILE(P1=1)WHILE(P2=2)"})
+    for (const std::string last : {"IF(P3=3)", "WHILE(P3=3)", "IF(P3=3)AND(P4=4)", "WHILE(P3=3 OR P4=4)OR(P5=5)"}) {
+      ASSERT_EQ(host("OPEN PROG 1 CLEAR"), "");
+      EXPECT_EQ(host(first + last), "ERR009") << first << last;
+      EXPECT_EQ(host(first + last + "X1"), "") << first << last;
+      EXPECT_EQ(host("ENDIF"), "ERR009");
+      EXPECT_EQ(host("ENDWHILE"), "ERR009");
+      EXPECT_EQ(host("CLOSE"), "") << first << last;
+    }
 }
 
 TEST_F(FixedBuffer, StructureOfPlcs) {

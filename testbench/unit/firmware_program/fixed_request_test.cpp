@@ -114,6 +114,21 @@ TEST_F(FixedRequest, WithoutRoomItNeverRises) {
   EXPECT_TRUE(full());
 }
 
+// Written by who tells nobody, whatever the variables beside it are.
+TEST_F(FixedRequest, AChangedI18IsNoticedByTheRealTimeTask) {
+  for (const unsigned before : {10u, 7007u}) {  // I19 = 7007
+    platform::set_i(18, before);
+    ASSERT_EQ(host("OPEN PROG 1"), "");
+    platform::real_time();
+    ASSERT_TRUE(breq());
+    platform::set_i(18, 26624);
+    platform::real_time();
+    EXPECT_FALSE(breq()) << before;
+    EXPECT_TRUE(full()) << before;
+    ASSERT_EQ(host("CLOSE"), "");
+  }
+}
+
 // host-bus:5.7: an open fixed buffer owns the pin, then it shows the rotary one again.
 TEST_F(FixedRequest, TheFixedBufferOwnsThePin) {
   BRICK_COVERS("I18-2 BREQ-7");

@@ -124,6 +124,41 @@ TEST_F(Gather, ALongSourceTakesAWholeWordBetweenShortOnes) {
   }
 }
 
+// host-bus:6.8/5: DEFINE GATHER begins anew, and the pointers show it before anything is gathered.
+TEST_F(Gather, PointersAreThoseOfABufferThatBeginsAnew) {
+  for (const char* set_up : {"I5000=0", "I5000=2"}) {
+    const bool in_ram = set_up[6] == '2';
+    const std::string first = in_ram ? "60450" : "1079C";  // $10800 - 100
+    ASSERT_EQ(host(std::string("DEL GAT I5001=$400000 I5050=1 I5049=1 ") + set_up), "");
+    ram.write(DPRAM_GATHER_POINTER, 0x5555);
+    ASSERT_EQ(host("DEF GAT 100"), "");
+    EXPECT_EQ(host("RHX$3120 RHY$3120"), first + "|" + first) << set_up;
+    EXPECT_EQ(pointer(), in_ram ? 0U : 0x5555U) << set_up;
+    ASSERT_EQ(host("GATHER"), "");
+    servo_ticks(10);
+    ASSERT_EQ(host("ENDG"), "");
+    EXPECT_NE(host("RHY$3120"), first);
+    ASSERT_EQ(host("DEF GAT"), "");
+    EXPECT_EQ(host("RHX$3120 RHY$3120"), first + "|" + first) << set_up;
+    EXPECT_EQ(pointer(), in_ram ? 0U : 0x5555U) << set_up;
+  }
+}
+
+// host-bus:6.2: what is not used is the user's. Its size is taken back of a buffer in the RAM alone.
+TEST_F(Gather, TheSizeInTheRamIsThatOfABufferThere) {
+  ASSERT_EQ(host("I5000=2 DEF GAT 7"), "");
+  EXPECT_EQ(ram.read(DPRAM_GATHER_SIZE), 7);
+  ASSERT_EQ(host("DEL GAT"), "");
+  EXPECT_EQ(ram.read(DPRAM_GATHER_SIZE), 0);
+  ram.write(DPRAM_GATHER_SIZE, 0x5A5A);
+  ASSERT_EQ(host("DEL GAT"), "") << "nothing is defined";
+  EXPECT_EQ(ram.read(DPRAM_GATHER_SIZE), 0x5A5A);
+  for (const char* line : {"I5000=0 DEF GAT 7", "DEF GAT", "DEL GAT", "DEF GAT 7", "DELETE ALL"}) {
+    ASSERT_EQ(host(line), "") << line;
+    EXPECT_EQ(ram.read(DPRAM_GATHER_SIZE), 0x5A5A) << line;
+  }
+}
+
 TEST_F(Gather, I5000Of1Wraps) {
   ASSERT_EQ(host("I5000=1 I5001=$400000 I5050=1 I5049=1 DEF GAT 4"), "");
   const unsigned long before = count();
@@ -132,6 +167,21 @@ TEST_F(Gather, I5000Of1Wraps) {
   EXPECT_TRUE(gathers());
   const auto at = [before](unsigned n) { return hex(before + n) + "000000"; };
   EXPECT_EQ(host_lines("LIST GATHER"), (Lines{at(5), at(6), at(3), at(4)}));
+}
+
+// The words behind I5051 are I5061's.
+TEST_F(Gather, I5050AndI5051AloneChoose) {
+  ASSERT_EQ(host("I5061..5076=$FFFFFF I5049=1 I5050=0 I5051=0 DEF GAT 20"), "");
+  EXPECT_EQ(host("GATHER"), "ERR003");
+  host_port_character(0x05);
+  platform::background(1);
+  EXPECT_EQ(platform::sent(), "\x06") << "^E";
+  ASSERT_EQ(host("I5048=$400000 I5051=$800000"), "");
+  const unsigned long before = count();
+  ASSERT_EQ(host("GATHER"), "");
+  servo_ticks(1);
+  ASSERT_EQ(host("ENDG"), "");
+  EXPECT_EQ(host_lines("LIST GATHER"), (Lines{hex(before + 1) + "000000"}));
 }
 
 // Items of 32 bits from $060450 on; the pointer is the next one's place.
@@ -178,6 +228,12 @@ TEST_F(Gather, NoSampleGoesBeyondTheRam) {
   ASSERT_EQ(host("GATHER"), "");
   servo_ticks(5200);
   EXPECT_EQ(pointer(), 15279U) << "5093 samples of 3; the last item stays free";
+  EXPECT_FALSE(gathers());
+  // Whatever its words are: of 48 bits two items, 24 bits one.
+  ASSERT_EQ(host("I5001=$800020 I5002=$C00020 I5003=$800020 I5050=$7 DEF GAT"), "");
+  ASSERT_EQ(host("GATHER"), "");
+  servo_ticks(2600);
+  EXPECT_EQ(pointer(), 15276U) << "2546 samples of 6";
   EXPECT_FALSE(gathers());
 }
 

@@ -111,6 +111,19 @@ TEST_F(MotionProgram, WhatCannotBeExecutedIsARunTimeError) {
   }
 }
 
+// ENDWHILE leads to the condition, not to what stands before it on its line.
+TEST_F(MotionProgram, ALoopGoesBackToItsConditionAlone) {
+  for (const char* before :
+       {"X(P5)", "X2", "P4=0 X(P5)", "X2 F(P5)", "X2 P(P5+4)=0", "X2 P6=P5", "X(P5) M(P5)==P5", "X2 DWELL(P5)"}) {
+    platform::power_up();
+    ASSERT_EQ(host("M2->* P5=2"), "");
+    run({"INC TM10 TA2 TS0", std::string(before) + " WHILE(P1+P4<3)", "P1=P1+1", "ENDWHILE"});
+    EXPECT_EQ(p(1), 3.0) << before;
+    EXPECT_EQ(x(), 2.0) << before;
+    EXPECT_FALSE(error());
+  }
+}
+
 TEST_F(MotionProgram, RunNeedsAProgramThatFitsTogether) {
   EXPECT_EQ(host("B1R"), "ERR015");
   store(1, {"N7 P1=1"});

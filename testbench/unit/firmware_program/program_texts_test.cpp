@@ -90,8 +90,11 @@ TEST_F(ProgramTexts, TheHostsOwnAnswersHaveNoTag) {
     return sent();
   };
   ASSERT_EQ(bytes("I64=1"), "\x06");
-  EXPECT_EQ(bytes("P1=5 P1"), "5\r\x06");
-  EXPECT_EQ(bytes("UUU"), "\aERR003\r");
+  for (const char* before : {"P1=1", "SEND\"A\"", "CMDP\"P1\"", "CMDP\"UUU\"", "CMD\"P1\"", "SENDR\"A\""}) {
+    once({before});
+    EXPECT_EQ(bytes("P1=5 P1"), "5\r\x06") << before;
+    EXPECT_EQ(bytes("UUU"), "\aERR003\r") << before;
+  }
 }
 
 TEST_F(ProgramTexts, LetterSendsItsControlCharacterAlone) {
@@ -261,6 +264,26 @@ TEST_F(ProgramTexts, HostThatDoesNotReadHoldsUpNobodyButWhoSends) {
   all += sent();
   EXPECT_EQ(all.size(), static_cast<std::size_t>(stuck) * 101) << "nothing is lost";
   fake_hal_on_wait(nullptr);
+}
+
+// firmware:6.7/9: nothing waits for a host. An error that the port has no room for is lost.
+TEST_F(ProgramTexts, AnErrorOfACommandWaitsForNoHost) {
+  static unsigned waits;
+  waits = 0;
+  fake_hal_on_wait([] { ++waits; });
+  for (const char* statement : {"CMD\"UUU\"", "CMDS\"UUU\""}) {
+    load(1, {statement, "P1=P1+1"});
+    ASSERT_EQ(host("P1=0 ENABLE PLC 1"), "");
+    host_port_open_output();
+    while (host_port_room() != 0) host_port_send('x');
+    background(20);
+    EXPECT_EQ(waits, 0u) << statement;
+    EXPECT_EQ(p_variable_read(1), 20.0) << statement << ": a scan a pass";
+    plc_disable(1u << 1);
+    EXPECT_EQ(sent(), std::string(4096, 'x')) << statement;
+    background(2);
+    sent();
+  }
 }
 
 // 8192 values: the port holds 4096 characters of them, and the rest waits for half a second.

@@ -119,6 +119,33 @@ TEST_F(Rotary, OpenRules) {
   EXPECT_EQ(host("OPEN PLCC 3"), "ERR003");
 }
 
+// firmware:4.2: not while something lies below it. Nothing of it is lost then.
+TEST_F(Rotary, ARefusedDeletionChangesNothing) {
+  define(20);
+  ASSERT_EQ(host("P1=5"), "");
+  ASSERT_EQ(host("CLOSE DEF GAT 10"), "");
+  EXPECT_EQ(host("DEL ROT"), "ERR003");
+  EXPECT_TRUE(platform::breq());
+  EXPECT_EQ(host("PR LIST ROT"), "1|P1=5");
+  ASSERT_EQ(host("DEL GAT R"), "");
+  platform::real_time();
+  EXPECT_EQ(host("PR P1"), "0|5");
+}
+
+// A host may write into the ring: lines are those that were counted, however many begin there now.
+TEST_F(Rotary, PrDoesNotGoBelowNoLines) {
+  define(10);
+  ASSERT_EQ(host("P1=1 P2=2 P3=3 P4=4"), "");
+  ASSERT_EQ(rotary_buffers[0].lines, 1u);
+  for (std::uint32_t i = 0; i < 4; ++i)
+    user_memory_write(rotary_buffers[0].base + i, rotary_word(0, i) | WORD_START_OF_LINE);
+  for (const std::uint32_t left : {3u, 2u, 1u, 0u}) {
+    EXPECT_TRUE(rotary_consume(0, 1));
+    EXPECT_EQ(rotary_buffers[0].used, left);
+    EXPECT_EQ(host("PR"), "0") << left;
+  }
+}
+
 TEST_F(Rotary, RunningBuffersAreProtected) {
   define(20);
   ASSERT_EQ(host("X1"), "");

@@ -2,6 +2,7 @@
 #include "testbench/unit/firmware_program/moving_motors.h"
 
 extern "C" {
+#include "firmware/base/dpram.h"
 #include "firmware/motion/jog.h"
 #include "firmware/run/run_control.h"
 }
@@ -252,6 +253,44 @@ TEST_F(StatusOfMoves, SegmentsAndLookahead) {
       ASSERT_EQ(host("A"), "");
       ticks(50);
     }
+  }
+}
+
+// host-bus:6.5/26, 27: what does not accelerate has the time that it was given, whatever was in its place before; of
+// RAPID and segments none is told.
+TEST_F(StatusOfMoves, TimesLeftOfWhatIsNoLinearMove) {
+  const struct {
+    const char* line;
+    move_kind kind;
+    double ms;
+  } cases[] = {{"DWELL500", MOVE_DWELL, 500}, {"PVT300 X4:0", MOVE_PVT, 300}, {"RAPID X400", MOVE_OWN, 0}};
+  const auto left = [](std::uint32_t item) {
+    platform::background(2);
+    return static_cast<std::int32_t>(dpram_read_item(DPRAM_CS_BLOCKS + item));
+  };
+  fit({"1000X"});
+  dpram_write(DPRAM_BACKGROUND_COUNT, 1);
+  ASSERT_EQ(host("I50=1 I49=1"), "");
+  const auto expect = [&](double ms, const char* line) {
+    EXPECT_NEAR(left(DPRAM_CS_MOVE_TIME_LEFT), ms, 1) << line;
+    EXPECT_EQ(left(DPRAM_CS_ACCELERATION_TIME_LEFT), 0) << line;
+  };
+  for (const auto& c : cases) {
+    store({"LINEAR TA100 TS0 TM200 X1", "X2", "X3", c.line});
+    ASSERT_EQ(host("&1B1R"), "");
+    for (int i = 0; i < 5000 && !(cs().active && cs().moves[cs().executing].kind == c.kind); ++i)
+      platform::servo_ticks(1);
+    expect(c.ms, c.line);
+    platform::servo_ticks(200);
+    expect(c.ms == 0 ? 0 : c.ms - 200 * kTickMs, c.line);
+    ASSERT_EQ(host("A"), "");
+    ticks(500);
+  }
+  store({"LINEAR TA100 TS0 TM200 X1", "X2"});
+  ASSERT_EQ(host("&1 I5113=10 B1R"), "");
+  for (int i = 0; i < 12; ++i) {
+    platform::servo_ticks(50);
+    expect(0, "segments");
   }
 }
 
