@@ -133,14 +133,13 @@ static void note_release(unsigned ic, uint32_t word) {
 }
 
 void gate_ic_await_release(void) {
-  const uint32_t left = release_left();
-  if (left != 0u) hal_delay_us(left);
+  hal_delay_us(release_left());
   release_us = 0;
 }
 
 void gate_ic_release_clocks(void) {
-  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
-    if (!gate_ic_present(ic)) continue;
+  for (uint32_t left = found; left != 0u; left &= left - 1u) {
+    const unsigned ic = (unsigned)__builtin_ctz(left);
     const uint32_t address = address_of(ic, GATE_WORD_CLOCK, 0);
     const uint32_t word = *hal_x(address) & HAL_WORD_MASK, inputs = inputs_of(ic);
     if ((word & inputs) == inputs) continue;

@@ -46,7 +46,7 @@ bool tasks_real_time_is_periodic(void) { return real_time_active; }
 /* Half of the time from one real-time interrupt to the next: the background has the rest. */
 uint32_t tasks_real_time_slice(void) {
   const uint32_t longest = LONGEST_SLICE_MS * hal_cycles_per_ms(), period = servo_period;
-  if (period > longest) return longest; /* no overflow below: I8 is 255 at most */
+  if (period > 2u * longest) return longest; /* no overflow below: I8 is 255 at most */
   const uint32_t half = period * (real_time_period + 1u) / 2u;
   return half < longest ? half : longest;
 }

@@ -7,6 +7,8 @@
 #define LEAST_ARC 9.5367431640625e-7 /* 2^-20, of pi, when Isx97 is 0 */
 #define LEAST_RADIUS 1e-9            /* of the distance of the ends: below it the radius is 0 */
 
+enum { DRIFT_STEPS = 16 }; /* even */
+
 static double product(const double a[CIRCLE_AXES], const double b[CIRCLE_AXES]) {
   double sum = 0.0;
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
@@ -113,6 +115,7 @@ enum circle_kind circle_of(const struct circle_line* line, struct circle* c) {
   if ((line->vectors == 0 && !line->by_radius) || !rotation(line, axis)) return CIRCLE_STRAIGHT;
   go(line->end, -1.0, line->start, way);
   const double height = product(way, axis);
+  c->drifts = false;
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
     c->along[i] = height * axis[i];
     chord[i] = way[i] - c->along[i];
@@ -127,7 +130,23 @@ enum circle_kind circle_of(const struct circle_line* line, struct circle* c) {
   return turn(line, axis, length(chord), c);
 }
 
-double circle_length(const struct circle* c) {
+/* d/d(part) in the plane: outwards at the start, and a quarter of a turn on. */
+static void velocity(const struct circle* c, double part, double* outward, double* onward) {
+  const double angle = c->angle * part;
+  slice_pause();
+  const double now = c->radius + c->growth * part;
+  slice_pause();
+  const double radius = now * c->angle;
+  slice_pause();
+  const double cosine = math_cosine(angle, false), sine = math_sine(angle, false);
+  slice_pause();
+  *outward = c->growth * cosine - radius * sine;
+  slice_pause();
+  *onward = c->growth * sine + radius * cosine;
+  slice_pause();
+}
+
+static double of_arc(const struct circle* c) {
   const double mean = c->radius + c->growth * 0.5;
   slice_pause();
   const double round = mean * c->angle;
@@ -138,6 +157,35 @@ double circle_length(const struct circle* c) {
   const double sum = square + c->growth * c->growth;
   slice_pause();
   return math_square_root(sum);
+}
+
+/* By Simpson's rule. */
+static double of_drifting(const struct circle* c, double across, double on) {
+  double sum = 0.0;
+  for (uint32_t i = 0; i <= DRIFT_STEPS; i++) {
+    double outward, onward;
+    velocity(c, (double)i / (double)DRIFT_STEPS, &outward, &onward);
+    outward += across;
+    slice_pause();
+    onward += on;
+    slice_pause();
+    const double square = outward * outward + onward * onward;
+    slice_pause();
+    const double speed = square > 0.0 ? math_square_root(square) : 0.0;
+    slice_pause();
+    sum += i == 0 || i == DRIFT_STEPS ? speed : (double)(2u + 2u * (i & 1u)) * speed;
+    slice_pause();
+  }
+  return sum / (double)(3 * DRIFT_STEPS);
+}
+
+double circle_length(const struct circle* c, double beside[CIRCLE_AXES]) {
+  for (uint32_t i = 0; i < CIRCLE_AXES; i++) beside[i] = c->along[i];
+  if (!c->drifts) return of_arc(c);
+  const double across = product(c->along, c->first), on = product(c->along, c->second);
+  go(beside, -across, c->first, beside);
+  go(beside, -on, c->second, beside);
+  return of_drifting(c, across, on);
 }
 
 double circle_least_radius(const struct circle* c) { return c->growth < 0.0 ? c->radius + c->growth : c->radius; }
@@ -164,18 +212,8 @@ void circle_at(const struct circle* c, double part, double position[CIRCLE_AXES]
 }
 
 void circle_direction(const struct circle* c, double part, double direction[CIRCLE_AXES]) {
-  const double angle = c->angle * part;
-  slice_pause();
-  const double now = c->radius + c->growth * part;
-  slice_pause();
-  const double radius = now * c->angle;
-  slice_pause();
-  const double cosine = math_cosine(angle, false), sine = math_sine(angle, false);
-  slice_pause();
-  const double outward = c->growth * cosine - radius * sine;
-  slice_pause();
-  const double onward = c->growth * sine + radius * cosine;
-  slice_pause();
+  double outward, onward;
+  velocity(c, part, &outward, &onward);
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
     const double in_plane = c->first[i] * outward + c->second[i] * onward;
     slice_pause();

@@ -121,7 +121,7 @@ static void make_entry(struct conversion_entry* e, uint32_t line, uint32_t lines
 /* Whether `e`, of the same line as `b`, goes on with what that remembers: the digit that the servo task changes does
  * not count. */
 static bool is_as_before(const struct conversion_entry* e, const struct conversion_entry* b) {
-  const bool triggered = b->method == METHOD_ARMED && e->method == METHOD_RUNNING;
+  const bool triggered = b->method == METHOD_ARMED && e->method == METHOD_RUNNING && b->state->runs;
   if (b->setup != e->setup && !(triggered && ((b->setup ^ e->setup) & ~(uint32_t)METHOD) == 0u)) return false;
   for (uint32_t k = 1; k < CONVERSION_LONGEST; ++k)
     if (b->parameter[k] != e->parameter[k]) return false;

@@ -13,7 +13,7 @@
 #define FASTEST 2147483648.0 /* 1/(32 Ixx08) counts a ms */
 
 void jog_initialize(void) {
-  jogs_busy = jogs_asked = 0;
+  jogs_busy = jogs_asked = jogs_waiting = 0;
   for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){0};
 }
 
@@ -147,7 +147,7 @@ bool jog_stop_at(uint32_t motor, double deceleration) {
 static void nothing_moves(uint32_t motor) {
   struct motor_status_flags* status = &motors[motor].status;
   status->timed_move = status->aborting = status->home_search = false;
-  jogs[motor].ready = false;
+  jog_not_ready(motor);
   jogs[motor].requests++;
   jog_rests(&jogs[motor]);
   jogs_busy &= ~jog_bit(motor);

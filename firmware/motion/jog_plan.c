@@ -21,8 +21,6 @@ struct beginning {
   struct own_path_place place;
 };
 
-static uint32_t waiting; /* motors whose path is ready and begins with others that are not; servo task held off */
-
 enum look { LOOK_NOTHING, LOOK_LATER, LOOK_PLAN };
 
 /* Where a program has it `ahead` from now, in its last piece at the end of that. While time stands so does the motor.
@@ -63,7 +61,7 @@ static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
     return LOOK_NOTHING;
   }
   if (j->ready && j->request.aim != AIM_RAMP) return LOOK_LATER;
-  j->ready = false;
+  jog_not_ready(motor);
   b->requests = j->requests;
   b->motion = j->request;
   b->begins = j->clock + (int64_t)j->rate * (int64_t)cycles;
@@ -114,7 +112,7 @@ static bool hand_over(uint32_t motor, struct beginning* b) {
   j->next_begins = alone ? b->begins : INT64_MAX;
   j->ready = true;
   jogs_asked &= ~jog_bit(motor);
-  waiting = alone ? waiting & ~jog_bit(motor) : waiting | jog_bit(motor);
+  if (!alone) jogs_waiting |= jog_bit(motor);
   return true;
 }
 
@@ -127,17 +125,16 @@ static void begin_together(uint32_t motors_of_it) {
   }
   for (uint32_t left = motors_of_it; left != 0u; left &= left - 1u) {
     struct jog* j = &jogs[__builtin_ctz(left)];
-    if (j->ready && jog_next(j)->together != 0u)
-      j->next_begins = j->clock + longest; /* else something else is asked for */
+    j->next_begins = j->clock + longest;
   }
-  waiting &= ~motors_of_it;
+  jogs_waiting &= ~motors_of_it;
 }
 
 static void begin_waiting(void) {
   const uint32_t state = hal_mask_servo();
-  for (uint32_t left = waiting; left != 0u;) {
+  for (uint32_t left = jogs_waiting; left != 0u;) {
     const uint32_t first = left & -left, together = jog_next(&jogs[__builtin_ctz(left)])->together | first;
-    if ((together & jogs_asked) == 0u) begin_together(together & waiting);
+    if ((together & jogs_asked) == 0u) begin_together(together & jogs_waiting);
     left &= ~together;
   }
   hal_unmask(state);
@@ -167,6 +164,6 @@ static bool plan(uint32_t motor) {
 bool jog_plan(void) {
   bool any = false;
   for (uint32_t left = jogs_asked; left != 0u; left &= left - 1u) any |= plan((uint32_t)__builtin_ctz(left));
-  if (waiting != 0u) begin_waiting();
+  if (jogs_waiting != 0u) begin_waiting();
   return any;
 }

@@ -2,6 +2,12 @@
 
 struct jog jogs[MOTORS];
 volatile uint32_t jogs_asked;
+uint32_t jogs_waiting;
+
+void jog_not_ready(uint32_t motor) {
+  jogs[motor].ready = false;
+  jogs_waiting &= ~jog_bit(motor);
+}
 
 void jog_rests(struct jog* j) {
   struct jog_motion* now = jog_now(j);

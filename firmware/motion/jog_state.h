@@ -49,6 +49,7 @@ struct jog {
 extern struct jog jogs[MOTORS];
 /* A bit a motor: R has something to do. Changed with the servo task held off, and by it. */
 extern volatile uint32_t jogs_asked;
+extern uint32_t jogs_waiting; /* ready, and to begin with others that are not. The same */
 
 static inline uint32_t jog_bit(uint32_t motor) { return 1u << motor; }
 static inline struct jog_motion* jog_now(struct jog* j) { return &j->motions[j->current]; }
@@ -67,6 +68,7 @@ static inline int32_t jog_rate_of(const struct motor* m, bool by_program) {
   return s->held && !by_program ? s->increment_command : s->increment;
 }
 
+void jog_not_ready(uint32_t motor);                              /* servo task held off, or in it: nothing is next */
 void jog_rests(struct jog* j);                                   /* servo task held off, or in it: at AIM_REST */
 void jog_post(uint32_t motor, const struct jog_motion* request); /* the same */
 

@@ -40,7 +40,7 @@ enum { STEPS = 4 }; /* of a sweep, before something else has its turn */
 /* Sweeps ----------------------------------------------------------------------------------------------------------- */
 
 /* The part of the window in which a sweep does not see its own end. */
-static uint32_t spare(const struct look* l) { return l->length / 4u != 0 ? l->length / 4u : 1u; }
+static uint32_t spare(const struct look* l) { return l->length / 4u; }
 
 static int32_t* rate_at(const struct look* l, uint32_t knot) { return &lookahead_at(&l->buffer, knot)->rate; }
 

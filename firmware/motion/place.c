@@ -120,7 +120,7 @@ bool move_place(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (segment_is_under_way(cs)) return false;
   if (!s->next_valid || s->placed || s->end_block || corner_waits(cs) || !begins_alone(cs)) return false;
-  if (is_late(s) && !begins_anew(cs)) return false;
+  if (is_late(s)) return begins_anew(cs); /* placed next time */
   if (s->motors != 0) {
     const enum move_kind kind = s->moves[s->executing ^ 1u].kind;
     if (!move_place_motors(cs)) return false;

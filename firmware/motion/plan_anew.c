@@ -4,17 +4,27 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/corner.h"
 #include "firmware/motion/path.h"
+#include "firmware/motion/plan_move.h"
 #include "firmware/motion/plan_path.h"
 #include "firmware/motion/system_motors.h"
 
 enum { SAME_WAY = -20 }; /* 2^that of a move's way: less is what a forward program rounds, no other way */
 
-static bool is_another_way(const struct path_move* m, double by) {
+static double longest_axis(const struct path_move* m) {
   double longest = 0.0;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    if (math_absolute(m->delta[axis]) > longest) longest = math_absolute(m->delta[axis]);
+    longest = plan_larger(longest, math_absolute(m->delta[axis]));
     slice_pause();
   }
+  return longest;
+}
+
+/* A move without a way has none as long as it would be nothing beside those at its corners. */
+static bool is_another_way(uint32_t cs, uint32_t ahead, double by) {
+  struct path* p = &paths[cs];
+  double longest = longest_axis(path_of(p, ahead));
+  if (longest == 0.0 && ahead != 0) longest = longest_axis(path_of(p, ahead - 1u));
+  if (longest == 0.0 && ahead + 1u < p->count) longest = longest_axis(path_of(p, ahead + 1u));
   return math_absolute(by) > math_scale(longest, SAME_WAY);
 }
 
@@ -37,9 +47,11 @@ static uint32_t shift_axis(uint32_t cs, uint32_t axis, double shift) {
     if (axis <= AXIS_C) m->end[axis] = system_motors_turn(cs, axis, m->start[axis], m->told[axis]);
     const double by = m->end[axis] - was - shift;
     slice_pause();
-    if (is_another_way(m, by)) changed |= 1u << i;
+    const bool changes = is_another_way(cs, i, by);
+    if (changes) changed |= 1u << i;
     slice_pause();
     m->delta[axis] += by;
+    if (turns && changes) m->circle.drifts = true;
     if (turns) m->circle.along[axis - AXIS_X] += by;
     shift = m->end[axis] - was;
     slice_pause();

@@ -46,11 +46,10 @@ static enum circle_kind find_circle(uint32_t cs, struct path_move* m) {
 
 /* The length of an arc counts as the way of one feedrate axis of X, Y, Z. */
 static void arc_ways(const struct path_move* m, double way[AXIS_COUNT]) {
-  const double length = circle_length(&m->circle);
+  const double length = circle_length(&m->circle, &way[AXIS_X]);
   bool counted = false;
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
     const uint32_t axis = AXIS_X + i, axes = m->feedrate.axes;
-    way[axis] = m->circle.along[i];
     if (!counted && ((axes >> axis & 1u) != 0 || ((axes & AXIS_XYZ) == 0 && i == 0))) {
       way[axis] = way[axis] == 0.0 ? length : math_square_root(length * length + way[axis] * way[axis]);
       counted = true;

@@ -15,12 +15,13 @@
 #include "firmware/variables/i_variables.h"
 
 enum { PART_OF_COUNT = 16, LIMIT_KILLS = 1 << 8, DESIRED_LIMITS = 1 << 15, OTHERS_SHIFT = 21 }; /* bits of Ixx24 */
+enum { ROUNDED = 4 }; /* by which a path that is held at a limit may be beyond it */
 enum others { OTHERS_ALL, OTHERS_OF_SYSTEM, OTHERS_NONE };
 
 static struct guard {
   int64_t fatal_error, warning_error, in_position; /* position; V. INT64_MAX: not looked at */
   int64_t positive_limit, negative_limit;          /* of software, the same; */
-  int64_t positive_desired, negative_desired;      /* of the desired position */
+  int64_t positive_desired, negative_desired;      /* of the desired position, further out by ROUNDED */
   uint32_t scans_wanted;                           /* Ixx88 + 1 */
   uint32_t scans;                                  /* B: in position one after the other */
   bool integral_trips, limit_kills;
@@ -75,8 +76,8 @@ void protection_motor_changed(uint32_t motor) {
   g->negative_limit = limit_of(motor, 1, INT64_MIN);
   const bool desired = (mode & DESIRED_LIMITS) != 0u;
   const int64_t band = desired ? motor_position_of(motor - 1u, variable(motor, IXX41_DESIRED_POSITION_LIMIT)) : 0;
-  g->positive_desired = desired ? nearer(g->positive_limit, INT64_MAX, band) : INT64_MAX;
-  g->negative_desired = desired ? nearer(g->negative_limit, INT64_MIN, -band) : INT64_MIN;
+  g->positive_desired = desired ? nearer(g->positive_limit, INT64_MAX, band - ROUNDED) : INT64_MAX;
+  g->negative_desired = desired ? nearer(g->negative_limit, INT64_MIN, ROUNDED - band) : INT64_MIN;
   g->scans_wanted = (uint32_t)variable(motor, IXX88_IN_POSITION_SCANS) + 1u;
   g->integral_trips = variable(motor, IXX63_INTEGRATION_LIMIT) < 0;
   g->limit_kills = (mode & LIMIT_KILLS) != 0u;
@@ -221,8 +222,8 @@ static void check_desired(uint32_t motor, const struct view* view, int direction
 }
 
 bool protection_desired_limits(uint32_t motor, int64_t* lowest, int64_t* highest) {
-  *lowest = guards[motor].negative_desired;
-  *highest = guards[motor].positive_desired;
+  *lowest = nearer(guards[motor].negative_desired, INT64_MIN, -ROUNDED);
+  *highest = nearer(guards[motor].positive_desired, INT64_MAX, ROUNDED);
   return *lowest != INT64_MIN || *highest != INT64_MAX;
 }
 

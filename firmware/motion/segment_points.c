@@ -86,7 +86,7 @@ bool segment_points_begin(uint32_t cs) {
   slice_pause();
   path_motors_begin(cs);
   q->looks = false;
-  for (uint32_t i = 0; i < SPLINE_POINTS; i++) add_points(cs, &(struct path_point){.count = 0});
+  for (uint32_t i = 0; i < LAST_POINTS; i++) add_points(cs, &(struct path_point){.count = 0});
   system_motors_come_along(cs);
   slice_pause();
   path_of(&paths[cs], 0)->change = path_of(&paths[cs], 0)->acceleration; /* it blends with nothing before it now */
@@ -100,7 +100,7 @@ bool segment_points_begin(uint32_t cs) {
   q->points = LAST_POINTS;
   slice_pause();
   q->looks = lookahead_begin(cs, (uint32_t)(period > 0 ? period : 1));
-  for (uint32_t i = 0; q->looks && i + 1u < SPLINE_POINTS; i++) look_at_point(cs);
+  for (uint32_t i = 0; q->looks && i < LAST_POINTS; i++) look_at_point(cs);
   q->made = false;
   if (q->one_move) q->stops = true; /* a stop that has come meanwhile stays one */
   q->runs = true;

@@ -6,6 +6,7 @@
 extern "C" {
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/jog.h"
+#include "firmware/motion/system_path.h"
 }
 
 namespace {
@@ -446,6 +447,44 @@ TEST_F(KinematicStops, AnAbortOnThePath) {
   EXPECT_NEAR(axis(AXIS_Y), stood.y, 1e-4);
   run();
   EXPECT_NEAR(hand().x, 300, 1e-3);
+}
+
+// motion:5.4/6 in joints: without the real-time task each goes on at its own last velocity, 20 and 20 counts a ms, not
+// along the program, which has joint 1 by the square of X.
+TEST_F(KinematicStops, PvtRunsOnMotorByMotor) {
+  fit({"I", "I"});
+  program("FORWARD", {"Q7=SQRT(P1/1000) Q8=P2/1000"});
+  program("INVERSE", {"P1=Q7*Q7*1000 P2=Q8*1000 P101=2000*Q7*Q17 P102=1000*Q18"});
+  ASSERT_EQ(host("I5150=1 I5190=1000"), "");
+  store({"PVT100", "X1:10 Y2:20", "WHILE(P9=0) WAIT"});
+  ASSERT_EQ(host("&1B1R"), "");
+  for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+  for (double t = 0; t < 250; t += kTickMs) {
+    if (t > 100) {
+      ASSERT_NEAR(at(1), 1000 + 20 * (t - 100), 3 / kUnit) << t;
+      ASSERT_NEAR(at(2), 2000 + 20 * (t - 100), 3 / kUnit) << t;
+    }
+    system_path_servo();
+  }
+}
+
+// motion:8.1/4: P101 on are of PVT alone, in other moves they are the user's.
+TEST_F(KinematicStops, VelocitiesOfOtherMovesAreNotLookedAt) {
+  for (const char* isx13 : {"0", "5"}) {
+    platform::power_up();
+    fit({"I"});
+    program("FORWARD", {"Q7=P1/1000"});
+    program("INVERSE", {"P1=Q7*1000 P101=1000000*1000000*1000000"});
+    ASSERT_EQ(host(std::string("I5150=1 I5113=") + isx13), "");
+    store({"TM100 TA20 TS0 X1"});
+    run();
+    EXPECT_EQ(cs().error, RUN_TIME_NONE) << isx13;
+    EXPECT_NEAR(at(1), 1000, 1e-3);
+    store({"PVT100 X0:0"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(30);
+    EXPECT_EQ(cs().error, RUN_TIME_KINEMATIC) << isx13;
+  }
 }
 
 }  // namespace

@@ -57,7 +57,8 @@ TEST(Circle, QuartersGoClockwiseAndCounterClockwise) {
   ASSERT_EQ(circle_of(&line, &c), CIRCLE_ARC);
   EXPECT_NEAR(c.angle, kPi / 2, 1e-12);
   for (double part : {0.0, 0.25, 0.5, 1.0}) expect_at(c, part, {std::cos(part * kPi / 2), std::sin(part * kPi / 2), 0});
-  EXPECT_NEAR(circle_length(&c), kPi / 2, 1e-12);
+  double beside[3];
+  EXPECT_NEAR(circle_length(&c, beside), kPi / 2, 1e-12);
   double direction[3];
   circle_direction(&c, 0.5, direction);
   EXPECT_NEAR(direction[1] / direction[0], -1.0, 1e-9);
@@ -72,6 +73,26 @@ TEST(Circle, TheCentreMayBeAbsolute) {
   ASSERT_EQ(circle_of(&line, &c), CIRCLE_ARC);
   EXPECT_NEAR(c.radius, 2, 1e-12);
   EXPECT_NEAR(c.angle, kPi / 2, 1e-12);  // clockwise from 0 to -90 degrees
+}
+
+// motion:7.2/2: what the line does not give is 0, absolute the start's, whatever the line before has left there.
+TEST(Circle, WhatIsNotGivenIsNothingOrTheStarts) {
+  circle c;
+  for (const bool absolute : {false, true}) {
+    circle_line line = with_centre(line_of({12, 5, 0}, {8, 5, 0}), absolute ? 10 : -2, 99, 99);
+    line.absolute = absolute;
+    line.vectors = 1;  // I
+    ASSERT_EQ(circle_of(&line, &c), CIRCLE_ARC);
+    EXPECT_NEAR(c.radius, 2, 1e-12) << absolute;
+    EXPECT_NEAR(c.centre[0], 10, 1e-12);
+    EXPECT_NEAR(c.centre[1], 5, 1e-12);
+    line = with_centre(line_of({12, 5, 0}, {12, 9, 0}), 99, absolute ? 7 : 2, 99);
+    line.absolute = absolute;
+    line.vectors = 2;  // J
+    ASSERT_EQ(circle_of(&line, &c), CIRCLE_ARC);
+    EXPECT_NEAR(c.centre[0], 12, 1e-12) << absolute;
+    EXPECT_NEAR(c.centre[1], 7, 1e-12);
+  }
 }
 
 TEST(Circle, EndAtTheStartIsAFullTurn) {

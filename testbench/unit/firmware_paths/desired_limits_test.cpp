@@ -90,4 +90,37 @@ TEST_F(DesiredLimits, BehindASequenceItGoesOnFromWhereItWasHeld) {
     }
 }
 
+// motion:7.5/6: the first segment already leads beyond the limit, so it stops at the knot before it, the start.
+TEST_F(DesiredLimits, InTheFirstSegmentItDoesNotLeaveTheStart) {
+  for (const char* far : {"X6", "X-6"}) {
+    SCOPED_TRACE(far);
+    platform::power_up();
+    fit_x("$8001");
+    ASSERT_EQ(host("I113=5 I114=-5"), "");
+    store({"TM150 TA2 TS0", far});  // 40 counts a ms
+    ASSERT_EQ(host("&1B1R"), "");
+    for (unsigned n = ticks_of(100); n > 0; --n) {
+      platform::servo_ticks(1);
+      ASSERT_EQ(motors[0].trajectory, 0);
+    }
+    EXPECT_TRUE(run_is_running(0));
+    EXPECT_EQ(std::stoul(host("??").substr(12, 6), nullptr, 16) & 2u, 2u);
+  }
+}
+
+// One whose limit is taken away goes by its axes again, beside another one that has its own.
+TEST_F(DesiredLimits, AMotorThatIsHeldNoMoreStandsWhereItsAxesAre) {
+  fit({"1000X", "1000Y"});
+  for (const char* motor : {"1", "2"}) {
+    const std::string i = "I" + std::string(motor);
+    ASSERT_EQ(host(i + "16=50 " + i + "17=1 " + i + "13=50000 " + i + "24=$C001"), "");
+  }
+  ASSERT_EQ(host("I5113=5 I5120=40"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
+  store({"F40 TA50 TS0", "X54 Y10", "DWELL20 I124=$1", "X20 Y20", "DWELL20", "X30"});
+  EXPECT_LE(fastest(), 50 * 1.01);
+  EXPECT_EQ(motors[0].trajectory, 30000LL * 3072);
+  EXPECT_EQ(motors[1].trajectory, 20000LL * 3072);
+}
+
 }  // namespace

@@ -150,18 +150,22 @@ TEST_F(Lookahead, SizingOfTheExample) {
   EXPECT_LT(fastest[1], 350) << "27 segments of 5 ms stop from sqrt(2 x 27 x 5 x v)";
 }
 
-// A segment at a time by Isx21: 14 and 15 are shown as 10 and 11, each stops at the next knot.
+// A segment at a time by Isx21: 14 and 15 are shown as 10 and 11, in bits 11 to 8 of word 3 too, each stops at the next
+// knot.
 TEST_F(Lookahead, SingleSegments) {
   fit({"1000X"});
   ASSERT_EQ(host("I5113=10 I5120=20 I116=50 I117=1"), "");
   ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
   store({"TM300 TA50 TS0", "X10"});
   ASSERT_EQ(host("&1B1R"), "");
+  const auto shown = [] { return std::stoul(host("??").substr(12, 6), nullptr, 16) >> 8 & 0xF; };
   platform::servo_ticks(400);
   EXPECT_EQ(host("I5121"), "2");
+  EXPECT_EQ(shown(), 2u);
   ASSERT_EQ(host("I5121=4"), "");
   platform::servo_ticks(400);
   EXPECT_EQ(host("I5121"), "0");
+  EXPECT_EQ(shown(), 0u);
   const auto stands = [] {
     const std::int64_t before = motors[0].trajectory;
     platform::servo_ticks(50);
@@ -173,6 +177,7 @@ TEST_F(Lookahead, SingleSegments) {
     ASSERT_EQ(host("I5121=14"), "");
     platform::servo_ticks(300);
     EXPECT_EQ(host("I5121"), "10");
+    EXPECT_EQ(shown(), 10u);
     ASSERT_TRUE(stands());
     places.push_back(at(1));
   }
@@ -185,6 +190,7 @@ TEST_F(Lookahead, SingleSegments) {
     ASSERT_EQ(host("I5121=15"), "");
     platform::servo_ticks(300);
     EXPECT_EQ(host("I5121"), "11");
+    EXPECT_EQ(shown(), 11u);
     ASSERT_TRUE(stands());
   }
   EXPECT_NEAR(at(1), places[1], 0.01);

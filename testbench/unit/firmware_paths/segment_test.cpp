@@ -440,4 +440,23 @@ TEST_F(Segments, SynchronousAssignmentsComeWithTheirMove) {
   EXPECT_EQ(m_variable_read(1), 4) << "behind the last move";
 }
 
+// The servo task gets a sequence when 12 ms of it are made, in lookahead too, however slowly that goes.
+TEST_F(Segments, BeginWhenTwelveMillisecondsAreMade) {
+  for (const char* isx20 : {"0", "1", "40"})
+    for (const int isx13 : {1, 5}) {
+      SCOPED_TRACE(std::string(isx20) + " " + std::to_string(isx13));
+      platform::power_up();
+      fit({"1000X"});
+      ASSERT_EQ(host("I5113=" + std::to_string(isx13) + " I5120=" + isx20), "");
+      ASSERT_EQ(host("&1DEFINE LOOKAHEAD 300,10"), "");
+      store({"TM500 TA20 TS0", "X5"});
+      ASSERT_EQ(host("&1B1R"), "");
+      const piece_ring& ring = cs().ring;
+      platform::real_time_in_slices([&] {
+        if (ring.added != ring.executing) { EXPECT_GE((ring.added - ring.executing) * isx13, 12u); }
+      });
+      EXPECT_NE(ring.added, ring.executing);
+    }
+}
+
 }  // namespace

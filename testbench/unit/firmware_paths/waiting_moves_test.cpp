@@ -15,6 +15,20 @@ using spline_path::Spline;
 
 constexpr double kPi = 3.14159265358979323846;
 
+// Of a curve over 0 to 1, in the unit of its places: as a polygon of 100,000 sides.
+template <typename Place>
+double length_of(const Place& place) {
+  constexpr int kSides = 100000;
+  double length = 0;
+  auto before = place(0);
+  for (int i = 1; i <= kSides; ++i) {
+    const auto now = place(static_cast<double>(i) / kSides);
+    length += std::hypot(now.first - before.first, now.second - before.second);
+    before = now;
+  }
+  return length;
+}
+
 class WaitingMoves : public MovingMotors {
  protected:
   static void begin(const Lines& definitions) {
@@ -249,6 +263,7 @@ TEST_F(WaitingMoves, BlendByTheWaysThatTheyGo) {
 
 // The arc keeps its shape, in its plane (X goes to Z about -Y); what its end is beside that goes evenly.
 TEST_F(WaitingMoves, ArcsEndAtTheirEnds) {
+  constexpr double kTolerance = 4 / kUnit + 380 * 4e-6 * 16;  // the time to 4e-6 of 380 ms, at 16 counts/ms
   for (const char* arc :
        {"NORMAL J-1 CIRCLE1 X3 Z0 I1 K0", "NORMAL J-1 CIRCLE1 X3 R1", "NORMAL J-1 CIRCLE1 X3 Z0 R1"}) {
     for (const bool by_program : {false, true}) {
@@ -258,7 +273,9 @@ TEST_F(WaitingMoves, ArcsEndAtTheirEnds) {
       stop({arc, "LINEAR X4"});
       ASSERT_EQ(host("#1HMZ"), "");
       platform::servo_ticks(5);
-      const double turn = std::hypot(kPi, 1) * 100, line = 100;  // ms, as a helix that climbs 1
+      const double line = 100, turn = 100 * length_of([](double u) {  // ms
+                                        return std::pair{u - std::cos(kPi * u), -std::sin(kPi * u)};
+                                      });
       const auto made = [](double t, double time) { return (risen(t, 20, 0) - risen(t - time, 20, 0)) / time; };
       const auto x = [&](double t) {
         return 1000 * (1 - std::cos(kPi * made(t, turn)) + made(t, turn) + made(t - turn, line));
@@ -267,8 +284,8 @@ TEST_F(WaitingMoves, ArcsEndAtTheirEnds) {
       const Spline spline_x(x, turn + line + 20, 5), spline_z(z, turn + line + 20, 5);
       run(
           [&](double t) {
-            ASSERT_NEAR(at(1), spline_x.at(t), 4 / kUnit) << t;
-            ASSERT_NEAR(at(3), spline_z.at(t), 4 / kUnit) << t;
+            ASSERT_NEAR(at(1), spline_x.at(t), kTolerance) << t;
+            ASSERT_NEAR(at(3), spline_z.at(t), kTolerance) << t;
           },
           "&1R");
       expect_at({4000, 0, 0});
@@ -314,6 +331,74 @@ TEST_F(WaitingMoves, GoToTheirPlacesThroughAForwardProgramThatErrs) {
     ASSERT_FALSE(run_is_running(0));
     EXPECT_EQ(cs().error, RUN_TIME_NONE);
     for (unsigned i = 0; i < 2; ++i) EXPECT_NEAR(at(i + 1), p.ends[i], 2 / kUnit);
+  }
+}
+
+// An arc that leaves a part of the way to its end in its own plane takes the time of the whole curve by F. Half a turn
+// about (1, 0) from the start at 0, and a spiral; what is left goes along the chord, square to it, out of the plane.
+TEST_F(WaitingMoves, ArcsTakeTheTimeOfTheirCurve) {
+  const struct {
+    const char *line, *home;
+    double radius, growth, x, y, z;  // z: out of the plane
+  } cases[] = {{"CIRCLE1 X3 Y0 I1 J0", "#1HMZ", 1, 0, 1, 0, 0},
+               {"CIRCLE2 X3 Y0 I1 J0", "#1HMZ", 1, 0, 1, 0, 0},
+               {"CIRCLE1 X4 Y0 I1 J0", "#1HMZ", 1, 1, 1, 0, 0},
+               {"CIRCLE1 X3 Y0 I1 J0", "#2HMZ", 1, 0, 0, -2, 0},
+               {"CIRCLE1 X3 Y0 Z2 I1 J0", "#1HMZ", 1, 0, 1, 0, 2}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(std::string(c.line) + " " + c.home);
+    begin({"1000X", "1000Y", "1000Z"});
+    stop({c.line, "LINEAR X8"});
+    ASSERT_EQ(host(c.home), "");
+    motors[1].trajectory = motors[1].of_system = std::llround(-c.y * 1000 * kUnit);
+    platform::servo_ticks(5);
+    const double turn = std::string(c.line).find("CIRCLE2") == 0 ? -1 : 1;
+    const auto place = [&](double u) {
+      const double radius = c.radius + c.growth * u;
+      return std::pair{-radius * std::cos(kPi * u) + c.x * u, turn * radius * std::sin(kPi * u) + c.y * u};
+    };
+    ASSERT_EQ(host("&1R"), "");
+    for (int i = 0; i < 20 && !segment_is_under_way(0); ++i) platform::servo_ticks(1);
+    ASSERT_TRUE(segment_is_under_way(0));
+    const double time = std::hypot(length_of(place), c.z) * 100;  // ms at 10 a s
+    EXPECT_NEAR(static_cast<double>(path_of(&paths[0], 0)->time) / 4294967296.0, time, 1e-5 * time);
+    for (int i = 0; i < 2000 && run_is_running(0); ++i) platform::servo_ticks(3);
+    EXPECT_EQ(motors[0].trajectory, 8000 * 3072);
+  }
+}
+
+// A move without a way, which a forward program gives one by rounding, makes no corner.
+TEST_F(WaitingMoves, RoundingMakesNoCornerOfAMoveWithoutAWay) {
+  for (const bool rounds : {true, false}) {
+    begin({"1000X", "1000Y"});
+    kinematic({"I", "I"});
+    ASSERT_EQ(host("I5183=0.9"), "");
+    stop({"TM50 X1", "Y2 F10", "X1"});
+    ASSERT_EQ(path_of(&paths[0], 0)->sharp, false);
+    ASSERT_EQ(host(rounds ? "P10=0.000000001" : "P10=0.1"), "");
+    ASSERT_EQ(host("&1R"), "");
+    for (int i = 0; i < 20 && !segment_is_under_way(0); ++i) platform::servo_ticks(1);
+    ASSERT_TRUE(segment_is_under_way(0));
+    EXPECT_EQ(path_of(&paths[0], 1)->sharp, !rounds) << "from -X to Y";
+    EXPECT_EQ(path_of(&paths[0], 1)->joins, rounds);
+  }
+}
+
+// A corner between two moves that go their ways as before stays as it was judged.
+TEST_F(WaitingMoves, OtherCornersStayAsTheyAre) {
+  for (const bool sharp : {true, false}) {
+    begin({"1000X", "1000Y"});
+    ASSERT_EQ(host(sharp ? "I5183=0" : "I5183=0.9"), "");
+    stop({"X3", "INC Y2", "X2"});
+    for (unsigned i = 1; i < 3; ++i) ASSERT_EQ(path_of(&paths[0], i)->sharp, !sharp);
+    ASSERT_EQ(host(sharp ? "I5183=0.9" : "I5183=0"), "");
+    ASSERT_EQ(host("#1HMZ"), "");
+    platform::servo_ticks(5);
+    ASSERT_EQ(host("&1R"), "");
+    for (int i = 0; i < 20 && !segment_is_under_way(0); ++i) platform::servo_ticks(1);
+    ASSERT_TRUE(segment_is_under_way(0));
+    EXPECT_EQ(path_of(&paths[0], 1)->sharp, sharp) << "behind the move that has become longer";
+    EXPECT_EQ(path_of(&paths[0], 2)->sharp, !sharp) << "behind one by a distance";
   }
 }
 

@@ -55,6 +55,8 @@ TEST_F(GateIc, EachIsFoundAtItsPlaceAndKeepsItsWords) {
     for (std::uint32_t address = kIcs[n].base; address < kIcs[n].base + 0x20; ++address)
       *hal_x(address) = 0x123000 + address;
     const auto before = words(kIcs[n]);
+    for (std::uint32_t address = kIcs[n].base + 0x20; kIcs[n].macro && address < kIcs[n].base + 0x40; ++address)
+      *hal_x(address) = 0x123456;
     fake_hal_clear_writes();
     gate_ic_find();
     const fake_write* log = nullptr;
@@ -163,6 +165,15 @@ TEST_F(GateIc, CounterAndCompareOutputOfOneChannel) {
   EXPECT_EQ(log[0].value, 0x5607u) << "reset; EQU is not written again";
   EXPECT_EQ(log[1].value, 0x5207u);
   EXPECT_EQ(log[1].address, control);
+  *hal_x(control) = 0;
+  gate_ic_set_compare_output(1, 3, true);
+  EXPECT_EQ(*hal_x(control), 0x1800u) << "no other bit is set";
+  fake_hal_fit(~0u);
+  *hal_x(kIcs[2].control(0)) = 0x5200;
+  fake_hal_clear_writes();
+  gate_ic_set_compare_output(2, 0, false);
+  gate_ic_zero_counter(2, 0);
+  EXPECT_EQ(fake_hal_writes(&log), 0u) << "not found at the start";
 }
 
 // A clock that is let go is driven for one and a half phase periods at most: 1.5 * (2 * 6527 + 3) * 3 / 117.9648 us.
@@ -180,13 +191,28 @@ TEST_F(GateIc, ReleasedClocksAreAwaited) {
     gate_ic_await_release();
     return (hal_cycles() - begin) / kCyclesPerUs;
   };
-  const std::uint32_t us = 1.5 * 13057 * 3 / 117.9648;
+  const std::uint32_t us = 1.5 * 13057 * 3 / 117.9648, most = 1.5 * 13057 * 3 / 117 + 1;  // whole us, 117 ticks each
   const std::uint32_t waited = waited_us();
   EXPECT_GE(waited, us);
-  EXPECT_LE(waited, us + 6);
+  EXPECT_LE(waited, most);
   EXPECT_EQ(waited_us(), 0u) << "once";
   gate_ic_release_clocks();
   EXPECT_EQ(waited_us(), 0u) << "nothing was driven";
+  *hal_x(kIcs[1].clock()) = 0x0F38D2 & ~kPhaseOut;  // the shortest period, divided by 16
+  *hal_x(kIcs[1].pwm()) = 0x00000F;
+  gate_ic_release_clocks();
+  EXPECT_EQ(waited_us(), 1u) << "1.5 * 3 * 16 / 117.9648 us, made whole";
+}
+
+// Those that are not there are not written, whatever their words read.
+TEST_F(GateIc, ClocksOfTheOnesThatAreThereAreReleased) {
+  find(1u << 1);
+  fake_hal_fit(~0u);
+  *hal_x(kIcs[2].clock()) = 0;
+  *hal_x(kIcs[1].clock()) = 0;
+  gate_ic_release_clocks();
+  EXPECT_EQ(*hal_x(kIcs[1].clock()), kPhaseOut | kServoOut);
+  EXPECT_EQ(*hal_x(kIcs[2].clock()), 0u);
 }
 
 // Also where an IC has been missed: amplifiers, compare outputs and commands of every servo IC.

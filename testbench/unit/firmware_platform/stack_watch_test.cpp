@@ -5,6 +5,7 @@
 
 extern "C" {
 #include "firmware/base/memory_map.h"
+#include "firmware/hal/hal.h"
 #include "firmware/hal/stacks.h"
 #include "firmware/kernel/stack_watch.h"
 }
@@ -33,6 +34,18 @@ TEST(StackWatch, ShowsTheBytesThatWereNeverUsed) {
   c.line("$$$");
   pass_all();
   EXPECT_EQ(c.line("RX$73 RY$73"), "400|800") << "also over a restart";
+}
+
+// A look is worth its time each eighth pass only.
+TEST(StackWatch, LooksEachEighthPass) {
+  Controller c;
+  const auto looks = [] {
+    *hal_x(MEMORY_STACKS) = 1;
+    stack_watch_pass();
+    return *hal_x(MEMORY_STACKS) != 1;
+  };
+  while (!looks()) {}
+  for (int pass = 1; pass <= 40; ++pass) EXPECT_EQ(looks(), pass % 8 == 0) << pass;
 }
 
 TEST(StackWatch, AWordOfAGuardIsAFault) {

@@ -43,6 +43,8 @@ TEST_F(TaskStatus, RealTimeTaskThatHasNotBegunWhenItIsDueAgainIsLate) {
     EXPECT_EQ(status(), kBoth) << "and again";
     c_.servo(1);
     EXPECT_EQ(status(), kBoth) << "it began late";
+    fake_task_run_real_time();
+    EXPECT_EQ(status(), kBoth) << "one that is not due says nothing about those that are";
     c_.servo(2 * (i8 + 1));
     EXPECT_EQ(status(), kReentry) << "the last was in time; 22 stays";
   }

@@ -53,6 +53,18 @@ TEST_F(WatchdogTask, StrobesDownToZeroAndNotBelow) {
   EXPECT_EQ(hal_signed(*hal_x(kCounter)), -5) << "and remembered";
 }
 
+// A reset shows the count that it begins with as the lowest.
+TEST_F(WatchdogTask, TheLowestValueBeginsAtTheCount) {
+  for (const std::int32_t i40 : {7, 3000}) {
+    c_.line("I40=" + std::to_string(i40) + " SAVE");
+    *hal_x(kCounter) = 0x123456;
+    c_.restart();
+    watchdog_initialize();
+    EXPECT_EQ(counter(), i40);
+    EXPECT_EQ(hal_signed(*hal_x(kCounter)), i40);
+  }
+}
+
 // A background that sleeps until the next real-time interrupt is woken in time to reload.
 TEST_F(WatchdogTask, WakesTheBackgroundAtHalfOfItsCount) {
   c_.line("I40=10");

@@ -337,4 +337,27 @@ TEST_F(CubicMoves, AbortFindsAnAxisWithoutMotorOnTheCurve) {
   }
 }
 
+// Each axis of a motor's definition counts, with its velocity, and no axis of the definition before.
+TEST_F(CubicMoves, PvtOfAMotorOfThreeAxes) {
+  const Lines program = {"PVT100", "X1:10 Y2:-10 Z3:20", "X0:0 Y0:0 Z0:0"};
+  const struct {
+    const char* definition;
+    double place, velocity;  // counts, counts a ms
+  } cases[] = {{"100X+50Y-20Z", 100 + 100 - 60, (100 * 10 - 50 * 10 - 20 * 20) / 1000.0},
+               {"50Y-20Z", 100 - 60, (-50 * 10 - 20 * 20) / 1000.0},
+               {"-20Z", -60, -20 * 20 / 1000.0}};
+  platform::power_up();
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.definition);
+    fit({c.definition});
+    ASSERT_EQ(host("I5190=1000"), "");
+    store(program);
+    compare(
+        [&](double t) {
+          return t < 100 ? pvt(0, 0, c.place, c.velocity, 100, t) : pvt(c.place, c.velocity, 0, 0, 100, t - 100);
+        },
+        400);
+  }
+}
+
 }  // namespace

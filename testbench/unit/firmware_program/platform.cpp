@@ -56,6 +56,7 @@ std::vector<std::string> host_lines(const std::string& line) {
     if (!quoted) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   }
   const error_t error = command_line(text.c_str());
+  EXPECT_FALSE(fake_hal_masked()) << "a section that holds a task off was not left: " << line;
   std::vector<std::string> lines;
   std::string reply;
   for (const char c : output()) {

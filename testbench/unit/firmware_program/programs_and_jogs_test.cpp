@@ -380,4 +380,36 @@ TEST_F(ProgramsAndJogs, ProgramsJogOtherMotors) {
   EXPECT_EQ(motors[0].trajectory, 0) << "its own is not jogged";
 }
 
+// A RAPID move waits for its own motors. One that took part in the last ones and has left the system is jogged while
+// others move.
+TEST_F(ProgramsAndJogs, AMotorThatHasLeftTheSystemIsNotWaitedFor) {
+  fit({"1000X", "1000Y"});
+  quick(1);
+  quick(2);
+  store({"RAPID X1 Y1", "X2 Y2"});
+  run();
+  ASSERT_EQ(host("&1#1->0"), "");
+  ASSERT_EQ(host("#1J+"), "");
+  ticks(50);
+  store({"LINEAR TM100 TA20 TS0 Y3", "Y4"}, 2);
+  EXPECT_NEAR(run([](double) {}, "&1B2R"), 220, kTickMs);
+  EXPECT_EQ(motors[1].trajectory, position(4000));
+  EXPECT_TRUE(jog_is_moving(0));
+  EXPECT_NEAR(speed(1), 20, 1e-2);
+}
+
+// motion:4.1/4: what no program moves goes on while its system is held, also a motor that a RAPID move has moved last.
+TEST_F(ProgramsAndJogs, AMotorIsJoggedInAHoldBehindARapidMove) {
+  fit({"1000X"});
+  quick();
+  ASSERT_EQ(host("I5195=200000"), "");
+  store({"RAPID X1", "DWELL10000"});
+  begin();
+  ticks(400);
+  ASSERT_EQ(motors[0].trajectory, position(1000));
+  ASSERT_EQ(host("&1H"), "");
+  ticks(50);
+  jog("#1J:500", 1500);
+}
+
 }  // namespace

@@ -177,6 +177,25 @@ TEST_F(ConversionTable, ParallelWordsReachIntoTheNextAddress) {
   EXPECT_EQ(once(1), 0) << "25 bits are more than a result has";
 }
 
+// Rules 4 and 5: 1 to $18 bits from bit $2F at most; other numbers are no bits.
+TEST_F(ConversionTable, ParallelWordsHaveBitsThatAreThere) {
+  const struct {
+    const char* line;
+    std::int32_t result;
+  } cases[] = {{"001000", 1}, {"018000", 0xFFFFFF}, {"00102F", 1}, {"000000", 0}, {"019000", 0},
+               {"100000", 0}, {"101000", 0},        {"001030", 0}, {"001100", 0}, {"FFF000", 0}};
+  for (const auto& c : cases)
+    for (const char* method : {"2810F0 ", "6810F0 "}) {
+      table(std::string(method) + c.line);
+      for (const std::uint32_t address : {kFree, kFree + 1}) {
+        x(address, 0xFFFFFF);
+        y(address, 0xFFFFFF);
+      }
+      conversion_table_servo();
+      EXPECT_EQ(static_cast<std::int32_t>(result(1)), c.result) << method << c.line;
+    }
+}
+
 TEST_F(ConversionTable, ALimitedStepCatchesUp) {
   table("3810F0 010000 00000A 7810F0 010000 00000A");
   conversion_table_servo();
@@ -280,6 +299,36 @@ TEST_F(ConversionTable, TriggeredTimeBase) {
   EXPECT_EQ(signed_result(0), -95 * 256);
   c_.line("I8000=$BF8000");
   EXPECT_EQ(once(1), 0) << "armed anew";
+}
+
+// Rule 17: without its trigger it begins where the counter is as well, of that source or of another.
+TEST_F(ConversionTable, AnArmedTimeBaseThatIsToldToRun) {
+  for (const std::uint32_t source : {0u, 1u, 8u}) {
+    table("BF8000 000010");
+    x(kChannel, 0);
+    x(kChannel + 1, 0);
+    x(kChannel + 8, 0);
+    EXPECT_EQ(once(1), 0);
+    x(kChannel + source + 2, 2 * 100);
+    c_.line("I8000=$AF800" + std::to_string(source));
+    EXPECT_EQ(once(1), 0) << source;
+    x(kChannel + source + 2, 2 * 105);
+    EXPECT_EQ(once(1), 512 * 16 * 5) << source;
+  }
+}
+
+// motion:2.1/2: one that is taken away and put back is new, each time: it begins at its source.
+TEST_F(ConversionTable, AnEntryThatComesBackIsNew) {
+  table("C78000 D010F0 000001 000001");
+  for (std::int64_t place = 1000; place < 9000; place += 1000) {
+    x(kFree, place);
+    c_.line("I8001=$D010F0");
+    EXPECT_EQ(once(3), place);
+    x(kFree, place + 500);
+    EXPECT_LT(once(3), place + 500) << "slowly";
+    c_.line("I8001=0");
+    conversion_table_servo();
+  }
 }
 
 // Entries behind one that waits for its trigger are worked out, and each of several shows that it has had it.

@@ -444,5 +444,27 @@ TEST_F(DesiredPosition, ACountedPositionMovesNothing) {
   EXPECT_EQ(position_loop_step(0), 0);
 }
 
+// motion:1.2/3, to the unit: one more of its master's ways, Ixx07 = 1, leads out of a limit, none into it.
+TEST_F(DesiredPosition, AMotorInALimitFollowsNoUnitFurther) {
+  c_.line("I105=$10F5 I107=1 I106=1");
+  close();
+  std::int64_t word = 0;
+  *hal_x(0x10F5) = 0;
+  const auto follows = [&](int by) {
+    const std::int64_t before = motors[0].master;
+    word += by;
+    *hal_x(0x10F5) = static_cast<std::uint32_t>(word) & HAL_WORD_MASK;
+    desired(0);
+    return motors[0].master - before;
+  };
+  ASSERT_EQ(follows(1), 1);
+  for (const bool up : {true, false}) {
+    motors[0].found.positive_limit = up;
+    motors[0].found.negative_limit = !up;
+    EXPECT_EQ(follows(up ? 1 : -1), 0) << "further in";
+    EXPECT_EQ(follows(up ? -1 : 1), up ? -1 : 1) << "out";
+  }
+}
+
 }  // namespace
 }  // namespace brick
