@@ -3,7 +3,8 @@
 
 --root, as root: in a clean Debian 12 of its own below DIR (debootstrap, chroot; apt and pip configured as here) the
 wheel is installed without a compiler and moves a motor, the packages are installed, `brick --version` says the same
-everywhere, and a design of somebody else's builds against brick-dev. Without a program that it needs: exit status 77.
+everywhere, and a bench of somebody else's builds against brick-dev and runs its seeds. Without a program
+that it needs: exit status 77.
 """
 
 import argparse
@@ -18,7 +19,8 @@ SUITE, MIRROR = "bookworm", "http://deb.debian.org/debian"
 SHARED = ["/etc/apt/sources.list", "/etc/apt/sources.list.d", "/etc/apt/apt.conf.d", "/etc/apt/auth.conf.d",
           "/etc/apt/trusted.gpg.d", "/usr/share/keyrings", "/etc/pip.conf", "/etc/ssl/certs",
           "/usr/local/share/ca-certificates", "/etc/resolv.conf", "/etc/hosts"]
-EXAMPLE = "/usr/share/brick/examples/servo_ic"
+EXAMPLE = "/usr/share/brick/examples/own_bench"
+MOVE = "printf '#1J/\\n#1J:4000\\n@wait 300ms\\n#1P\\n' | /wheel/bin/brick exec --plant dac8 --load dac8 -"
 
 
 def debian_packages(build, folder):
@@ -67,6 +69,8 @@ def problems_in(root, build, made, packages):
     root.run("/wheel/bin/pip", "install", "--quiet", f"/tmp/{made.name}")
     if root.run("/wheel/bin/brick", "--version") != expected:
         yield "brick --version of the wheel is another than that of the build"
+    if (where := root.run("sh", "-c", MOVE)) != "4000\n":
+        yield f"motor 1 stands at {where}, expected 4000: {MOVE}"
     root.run("/wheel/bin/python", "-c", wheel.TRIAL)
     root.install(*(f"/tmp/{package.name}" for package in packages))
     if root.run("/usr/bin/brick", "--version") != expected:
@@ -74,6 +78,7 @@ def problems_in(root, build, made, packages):
     root.install("g++", "cmake", "make", "pkg-config")
     root.run("cmake", "-S", EXAMPLE, "-B", "/tmp/bench")
     root.run("cmake", "--build", "/tmp/bench")
+    root.run("sh", "-e", "-c", "cd /tmp/bench; ctest --output-on-failure")
 
 
 def main():
