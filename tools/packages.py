@@ -24,8 +24,15 @@ MOVE = "printf '#1J/\\n#1J:4000\\n@wait 300ms\\n#1P\\n' | /wheel/bin/brick exec 
 
 
 def debian_packages(build, folder):
+    shutil.rmtree(folder / "deb", ignore_errors=True)
     wheel.run("cpack", "-G", "DEB", "-B", folder / "deb", cwd=build)
     return sorted((folder / "deb").glob("*.deb"))
+
+
+def make(build, folder):
+    """(wheel, Debian packages) of one state of the build."""
+    wheel.run("cmake", "--build", build)  # cpack would, after the wheel has been made
+    return wheel.make(build, folder), debian_packages(build, folder)
 
 
 def lintian(packages):
@@ -92,10 +99,8 @@ def main():
         skip(f"not installed: {', '.join(missing)}")
     build, folder = options.build.resolve(), options.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    made = wheel.make(build, folder)
-    problems = [*wheel.lacks(made)]
-    packages = debian_packages(build, folder)
-    problems += lintian(packages)
+    made, packages = make(build, folder)
+    problems = [*wheel.lacks(made), *lintian(packages)]
     if options.root and not problems:
         problems += problems_in(Root(folder / "root"), build, made, packages)
     finish("packages", problems)
