@@ -23,12 +23,13 @@ nlohmann::json build_info() {
             {"build_type", BRICK_BUILD_TYPE}}}};
 }
 
-std::string version_text() {
+std::string version_text(const std::string& firmware) {
   const nlohmann::json build = build_info();
   const std::string commit = build.at("commit");
   std::string text = fmt::format("brick {}\n", build.at("version").get<std::string>());
   if (!commit.empty())
     text += fmt::format("commit {}{}\n", commit, build.at("dirty").get<bool>() ? ", with changes" : "");
+  if (!firmware.empty()) text += fmt::format("image {}\n", file_hash(firmware));
   for (const auto& [tool, version] : build.at("tools").items())
     text += fmt::format("{} {}\n", tool, version.get<std::string>());
   text.pop_back();

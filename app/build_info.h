@@ -11,7 +11,8 @@ namespace brick {
 // version, commit ("" of a tree without git), dirty (tracked files differed from it when this was built), tools: names
 // and versions.
 nlohmann::json build_info();
-std::string version_text();  // the same as lines, the first `brick VERSION`
+// The same as lines, the first `brick VERSION`; with the hash of the image that is used without another ("": none).
+std::string version_text(const std::string& firmware = "");
 
 // What made the results of a run: build, image ("" for none) and command line.
 void add_origin(nlohmann::json& results, const std::string& firmware);

@@ -15,6 +15,7 @@
 #include "app/control/command.h"
 #include "app/cpu_command.h"
 #include "app/line_cover.h"
+#include "app/paths.h"
 #include "app/regress/command.h"
 #include "app/run_bench.h"
 #include "systemc/core/usage_error.h"
@@ -56,7 +57,7 @@ struct Commands {
   Commands() {
     app.require_subcommand(1);
     app.footer("Exit status: 0 passed; 1 failed; 2 bad usage or bad input.");
-    app.set_version_flag("--version", version_text());
+    app.set_version_flag("--version", [] { return version_text(default_firmware_if_any()); });
     auto* list = app.add_subcommand("list", "benches with one line each");
     list->add_flag("--json", list_json, "as JSON");
     list->callback([this] { chosen = [this] { return list_command(all_benches(), list_json); }; });

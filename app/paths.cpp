@@ -16,6 +16,8 @@ namespace {
 
 fs::path executable_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 fs::path share_folder() { return executable_folder().parent_path() / "share" / "brick"; }
+fs::path built_image() { return executable_folder() / "turbo.elf"; }
+fs::path installed_image() { return share_folder() / "turbo.elf"; }
 
 bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -32,12 +34,18 @@ std::vector<std::string> names_in(const fs::path& folder, const std::string& end
 
 }  // namespace
 
-std::string default_firmware() {
-  const fs::path built = executable_folder() / "turbo.elf", installed = share_folder() / "turbo.elf";
-  for (const auto& path : {built, installed})
+std::string default_firmware_if_any() {
+  for (const auto& path : {built_image(), installed_image()})
     if (fs::exists(path)) return path.string();
-  throw UsageError(
-      fmt::format("no firmware image; expected {} or {}, or --firmware FILE.elf", built.string(), installed.string()));
+  return "";
+}
+
+std::string default_firmware() {
+  std::string file = default_firmware_if_any();
+  if (file.empty())
+    throw UsageError(fmt::format("no firmware image; expected {} or {}, or --firmware FILE.elf", built_image().string(),
+                                 installed_image().string()));
+  return file;
 }
 
 std::string boards_folder() {

@@ -7,6 +7,7 @@
 namespace brick {
 
 std::string default_firmware();          // turbo.elf; throws UsageError when there is none
+std::string default_firmware_if_any();   // the same, "" when there is none
 std::string boards_folder();             // throws UsageError when there is none
 std::vector<std::string> board_names();  // of the boards folder, sorted
 // NAME of the boards folder, or FILE.toml; `option` begins the message when there is none.

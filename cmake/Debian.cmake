@@ -1,8 +1,9 @@
 # Debian packages of a finished build: cpack -G DEB. `brick` is what people run, `brick-dev` what designs of others link
-# and build with. tools/packages.sh makes and tries them.
+# and build with. tools/packages.py makes and tries them.
 set(CPACK_PACKAGE_NAME brick)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(BRICK_CONTACT "The brick project <brick@example.org>" CACHE STRING "maintainer of the Debian packages")
+file(STRINGS ${CMAKE_SOURCE_DIR}/SECURITY.md contact REGEX "^Contact: ")  # the one place of the address
+string(REPLACE "Contact: " "" BRICK_CONTACT ${contact})
 set(CPACK_PACKAGE_CONTACT ${BRICK_CONTACT})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -35,7 +36,9 @@ file(WRITE ${debian}/changelog "brick (${PROJECT_VERSION}) unstable; urgency=low
      " -- ${BRICK_CONTACT}  Tue, 24 Nov 2026 00:00:00 +0000\n")
 file(WRITE ${debian}/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/\n"
      "Upstream-Name: brick\n\nFiles: *\nCopyright: 2026 The brick project\nLicense: Apache-2.0\n"
-     " On Debian systems, the full text is in /usr/share/common-licenses/Apache-2.0.\n")
+     " On Debian systems, the full text is in /usr/share/common-licenses/Apache-2.0.\n"
+     "Comment:\n What is linked statically stands with version and licence in\n"
+     " /usr/share/brick/licences/brick.spdx.json, the texts beside it.\n")
 foreach(file ${debian}/changelog ${CMAKE_SOURCE_DIR}/cmake/debian/brick.1)
   get_filename_component(name ${file} NAME)
   execute_process(COMMAND ${GZIP} -9nc ${file} OUTPUT_FILE ${debian}/${name}.gz)

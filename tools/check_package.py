@@ -24,7 +24,7 @@ from common import ROOT, finish, skip
 
 EXAMPLES = "share/brick/examples"
 IMAGE = "share/brick/turbo.elf"
-TOOLS = {"cocotb_servo_channel": ["iverilog", "vvp"], "firmware_change": ["riscv64-unknown-elf-gcc", "make", "patch"]}
+TOOLS = {"cocotb_servo_channel": ["iverilog", "vvp"], "firmware": ["riscv64-unknown-elf-gcc", "make", "patch"]}
 PROGRAMS = {"brick": ("servo_ic", []), "brick-rtl": ("board", ["rtl"])}  # of each pkg-config file: example, arguments
 
 

@@ -28,6 +28,9 @@ def contour(*orders, ahead):
 
 # picture: scripts by the name of their record, the second beside the first; columns, options of brick plot
 PICTURES = {
+    "first-move": ({"first-move": (ROOT / "examples/scripts/first-move.txt").read_text().splitlines()},
+                   "motor1.actual motor1.velocity plant.axis1.torque",
+                   ["--from", "90ms", "--to", "320ms", "--title", "#1J:4000"]),
     "record": ({"record": ["#1J/", "@wait 30ms", "#1J:4000", "@wait 220ms"]}, "motor1.velocity motor1.acceleration",
                ["--from", "60ms", "--limit", "velocity=32", "--limit", "acceleration=1",
                 "--title", "#1J:4000"]),

@@ -3,7 +3,8 @@
 
 --root, as root: in a clean Debian 12 of its own below DIR (debootstrap, chroot; apt and pip configured as here) the
 wheel is installed without a compiler and moves a motor, the packages are installed, `brick --version` says the same
-everywhere, and a design of somebody else's builds against brick-dev. Without a program that it needs: exit status 77.
+everywhere, and a bench of somebody else's builds against brick-dev and runs its seeds. Without a program
+that it needs: exit status 77.
 """
 
 import argparse
@@ -18,12 +19,20 @@ SUITE, MIRROR = "bookworm", "http://deb.debian.org/debian"
 SHARED = ["/etc/apt/sources.list", "/etc/apt/sources.list.d", "/etc/apt/apt.conf.d", "/etc/apt/auth.conf.d",
           "/etc/apt/trusted.gpg.d", "/usr/share/keyrings", "/etc/pip.conf", "/etc/ssl/certs",
           "/usr/local/share/ca-certificates", "/etc/resolv.conf", "/etc/hosts"]
-EXAMPLE = "/usr/share/brick/examples/servo_ic"
+EXAMPLE = "/usr/share/brick/examples/own_bench"
+MOVE = "printf '#1J/\\n#1J:4000\\n@wait 300ms\\n#1P\\n' | /wheel/bin/brick exec --plant dac8 --load dac8 -"
 
 
 def debian_packages(build, folder):
+    shutil.rmtree(folder / "deb", ignore_errors=True)
     wheel.run("cpack", "-G", "DEB", "-B", folder / "deb", cwd=build)
     return sorted((folder / "deb").glob("*.deb"))
+
+
+def make(build, folder):
+    """(wheel, Debian packages) of one state of the build."""
+    wheel.run("cmake", "--build", build)  # cpack would, after the wheel has been made
+    return wheel.make(build, folder), debian_packages(build, folder)
 
 
 def lintian(packages):
@@ -67,6 +76,8 @@ def problems_in(root, build, made, packages):
     root.run("/wheel/bin/pip", "install", "--quiet", f"/tmp/{made.name}")
     if root.run("/wheel/bin/brick", "--version") != expected:
         yield "brick --version of the wheel is another than that of the build"
+    if (where := root.run("sh", "-c", MOVE)) != "4000\n":
+        yield f"motor 1 stands at {where}, expected 4000: {MOVE}"
     root.run("/wheel/bin/python", "-c", wheel.TRIAL)
     root.install(*(f"/tmp/{package.name}" for package in packages))
     if root.run("/usr/bin/brick", "--version") != expected:
@@ -74,6 +85,7 @@ def problems_in(root, build, made, packages):
     root.install("g++", "cmake", "make", "pkg-config")
     root.run("cmake", "-S", EXAMPLE, "-B", "/tmp/bench")
     root.run("cmake", "--build", "/tmp/bench")
+    root.run("sh", "-e", "-c", "cd /tmp/bench; ctest --output-on-failure")
 
 
 def main():
@@ -87,10 +99,8 @@ def main():
         skip(f"not installed: {', '.join(missing)}")
     build, folder = options.build.resolve(), options.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    made = wheel.make(build, folder)
-    problems = [*wheel.lacks(made)]
-    packages = debian_packages(build, folder)
-    problems += lintian(packages)
+    made, packages = make(build, folder)
+    problems = [*wheel.lacks(made), *lintian(packages)]
     if options.root and not problems:
         problems += problems_in(Root(folder / "root"), build, made, packages)
     finish("packages", problems)

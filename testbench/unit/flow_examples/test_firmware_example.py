@@ -1,4 +1,4 @@
-"""examples/firmware_change, from an installed tree: the image is ours to the byte, the right step of the bench fails.
+"""examples/firmware, from an installed tree: the image is ours to the byte, the right step of the bench fails.
 
 Its own control: with a change that alters nothing the script fails.
 """
@@ -16,7 +16,7 @@ OBJCOPY = "riscv64-unknown-elf-objcopy"
 
 class FirmwareChange(Installed):
     def run_example(self):
-        example = self.data / "examples/firmware_change"
+        example = self.data / "examples/firmware"
         where = {"BUILD": str(self.prefix / "image"), "BRICK": f"{self.build}/bin/brick"}
         return subprocess.run([example / "run.sh"], timeout=250, text=True, env={**os.environ, **where},
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -36,7 +36,7 @@ class FirmwareChange(Installed):
         self.assertEqual(lines[4:], ["FAIL breq-rotary"])
         self.assertNotEqual(self.content(self.prefix / "image/turbo.elf"), self.content(f"{self.build}/bin/turbo.elf"))
         # The change taken back, with the same objects: the Makefile builds what CMake builds, and no change is noticed.
-        self.plant("examples/firmware_change/i17_off_by_one.patch", "+  if ((int32_t)ring->lines > ",
+        self.plant("examples/firmware/i17_off_by_one.patch", "+  if ((int32_t)ring->lines > ",
                    "+  if ((int32_t)ring->lines  >= ")
         done = self.run_example()
         self.assertEqual(done.returncode, 1, done.stdout)

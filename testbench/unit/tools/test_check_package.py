@@ -105,9 +105,9 @@ class Package(Tree):
         self.check(1, "1 tests ran; expected: the 2 of 2", "package: 1 problem(s)")
 
     def test_an_example_that_is_not_installed_fails(self):
-        for name in ("servo_ic", "cocotb_servo_channel", "firmware_change"):
+        for name in ("servo_ic", "cocotb_servo_channel", "firmware"):
             self.write(f"wanted/{name}/CMakeLists.txt", "")
-        self.check(1, "share/brick/examples: not installed: cocotb_servo_channel, firmware_change",
+        self.check(1, "share/brick/examples: not installed: cocotb_servo_channel, firmware",
                    "servo_ic.vcd was not written", options=["--examples", self.root / "wanted"])
 
     def test_an_example_without_the_package_is_left_out_by_name(self):
