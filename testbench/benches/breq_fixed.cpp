@@ -69,6 +69,8 @@ class FixedHost {
     const unsigned seen[] = {c.lines - counted_.lines, c.pulses - counted_.pulses, c.stays_low - counted_.stays_low,
                              c.quiet - counted_.quiet};
     counted_ = c;
+    const char* names[] = {"lines", "pulses of BREQ", "BREQ stays low", "commands that move nothing"};
+    for (unsigned i = 0; i < 4; ++i) b_.report.cover(names[i], seen[i]);
     const bool enough = seen[0] >= lines && seen[1] >= pulses && seen[2] >= stays_low && seen[3] >= quiet;
     std::string detail = fmt::format("{} lines, {} pulses, {} that stay low, {} commands that move nothing", seen[0],
                                      seen[1], seen[2], seen[3]);

@@ -393,6 +393,11 @@ class BreqSelect {
   // Each state of a buffer was selected, and both edges of pin and interrupt were there to be judged.
   void activity() {
     const bool panel = b_.board.jpan;
+    b_.report.cover("selections of an idle system", seen_.idle);
+    b_.report.cover("selections of one with room", seen_.ready);
+    b_.report.cover("selections of a full one", seen_.full);
+    if (panel) b_.report.cover("selections of none", seen_.none);
+    b_.report.cover("edges of BREQ", seen_.edges, kLeastEdges);
     const bool each = seen_.idle > 0 && seen_.ready > 0 && seen_.full > 0 && (seen_.none > 0) == panel;
     b_.report.step(
         "what the scoreboard has judged", each && seen_.edges >= kLeastEdges && interrupts_ >= kLeastEdges / 3,

@@ -97,6 +97,7 @@ class CaptureCompareBench {
           fmt::format("{} I7mn2={} I7mn3={} I7mn4={} I7mn5={}", host_.name(i), c.code, c.flag, c.gated ? 1 : 0, c.gate);
       same.word(who + " status", status[i] & kJudged, board.status(kJudged));
       taken += c.captured() ? 1 : 0;
+      if (c.captured()) b_.report.cover(fmt::format("captured, I7mn2={}", c.code), 1);
       same.word(who + " X:+3", captured[i], board.capture.read());
       same.equal(who + " captured bit after the read", after[i], 0);
     }

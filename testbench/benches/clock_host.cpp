@@ -80,6 +80,8 @@ void ClockHost::check(const std::string& name, unsigned falls) {
   if (found.size() > judged_)
     text += fmt::format("; {} violations, the first: {}", found.size() - judged_, found[judged_].text);
   bench_.report.step(name, phase >= falls && found.size() == judged_, text);
+  bench_.report.cover(fmt::format("falls of PHASE, source {}", source_), phase);
+  bench_.report.cover(fmt::format("falls of SERVO, source {}", source_), servo);
   judged_ = found.size();
   counted_ = counts;
 }

@@ -73,6 +73,15 @@ void EncoderBench::clear_errors() {
   for (unsigned i = 0; i < host_.channels(); ++i) host_.board(i).decoder.clear_error();
 }
 
+// Counts of a decode mode each way.
+void EncoderBench::cover_ways(unsigned mode, const std::vector<ChannelScoreboard::Change>& counts) {
+  unsigned up = 0, down = 0;
+  for (std::size_t n = 1; n < counts.size(); ++n)
+    ++(((counts[n].value - counts[n - 1].value) & 0xFFFFFF) == 1 ? up : down);
+  b_.report.cover(fmt::format("counts up, I7mn0={}", mode), up);
+  b_.report.cover(fmt::format("counts down, I7mn0={}", mode), down);
+}
+
 void EncoderBench::random_movement(const std::vector<unsigned>& modes) {
   set_modes(modes);
   clear_errors();
@@ -82,6 +91,7 @@ void EncoderBench::random_movement(const std::vector<unsigned>& modes) {
   host_.play();
   for (unsigned i = 0; i < modes.size(); ++i) {
     const std::int32_t position = host_.board(i).decoder.counter();
+    if (counts_pins(modes[i])) cover_ways(modes[i], host_.board(i).counts);
     const auto d = host_.counts(i);
     const bool enough = counts_pins(modes[i]) ? d.events >= kSteps / 20 : d.events == 0;
     b_.report.step(

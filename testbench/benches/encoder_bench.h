@@ -26,6 +26,7 @@ class EncoderBench {
   void words(const std::string& name, unsigned channels);  // what is read while nothing moves
   void judge_counts(const std::string& name, unsigned least);
 
+  void cover_ways(unsigned mode, const std::vector<ChannelScoreboard::Change>& counts);
   void random_movement(const std::vector<unsigned>& modes);
   void illegal_moves();
   void counter_reset();
