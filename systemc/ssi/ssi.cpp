@@ -40,7 +40,7 @@ std::uint32_t Ssi::read(bool x, unsigned address) const {
   const Channel& c = g.channel[n % kChannelsEach];
   switch (place) {
     case Place::kControl:
-      return geo ? c.control : c.control & ~regs::ssi_brick::control::kDriver.mask();
+      return c.control & ~regs::ssi_brick::control::kDriver.mask();  // a Geo PMAC has no such bit
     case Place::kPosition:
       return c.position & 0xFFFFFF;
     case Place::kHigh:

@@ -1,7 +1,9 @@
 """./dev mutate KIND [NAME...]: mutants of the sources, and which test kills each. docs/mutation.md has the scores.
 
   mutate rtl pic_8259              150 mutants of the module, drawn evenly; all where there are fewer
-  mutate firmware motion           the same of a folder of the firmware
+  mutate model ssi                 the same of a folder of the SystemC model
+  mutate firmware motion           of the firmware
+  mutate host library              of the host side: modules.toml has the names
   mutate rtl --changed --resume    modules whose inputs differ from those of their results
   mutate report [--check]          docs/mutation.md from results/mutation; --check: it is fresh, no reason is of a dead
                                    mutant; --release: and each survivor has one
@@ -37,7 +39,7 @@ def positive(text):
 def arguments():
     parser = argparse.ArgumentParser(prog="./dev mutate", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", help="rtl, firmware, report or again")
+    parser.add_argument("kind", help="rtl, model, firmware, host, report or again")
     parser.add_argument("names", nargs="*", metavar="NAME", help="modules, folders; all when none is given")
     parser.add_argument("--seed", type=int, help="of the drawing (1; again: the commit)")
     parser.add_argument("--count", type=positive, help="mutants a module that are not proved equal (150; again: 20)")

@@ -23,7 +23,7 @@ def killed_rows(module):
 def choose(modules, picks):
     """One of those whose file has changed since their results, or of all."""
     known = [m for m in modules if killed_rows(m)]
-    changed = [m for m in known if records.source_of(m.kind, m.name) != source_hash(ROOT / m.file)]
+    changed = [m for m in known if records.source_of(m.kind, m.name) != source_hash(ROOT, m)]
     return [picks.choice(changed or known)] if known else []
 
 

@@ -7,7 +7,7 @@ macro with arguments is left alone; a macro or an enumerator by its name is a co
 import re
 import subprocess
 
-from clang.cindex import CursorKind, Index, StorageClass, TypeKind
+from clang.cindex import CursorKind, Index, StorageClass, TranslationUnit, TypeKind
 from mutant import Place
 
 OTHER = {  # operator: [(operator of the mutant, its text)]
@@ -31,16 +31,24 @@ STATEMENTS = {CursorKind.CALL_EXPR, CursorKind.BINARY_OPERATOR, CursorKind.COMPO
 class Finder:
     """Walks the functions of one file. `places` is what it found."""
 
+    language = ()  # options that say it
+
     def __init__(self, file, options):
         self.source, self.places = file.read_bytes(), []
-        unit = Index.create().parse(str(file), args=[*options, "-isystem", own_headers()])
-        errors = [str(d) for d in unit.diagnostics if d.severity >= d.Error]
-        if errors:
-            raise ValueError(f"Clang does not read it: {errors[0]}")
-        for node in unit.cursor.get_children():
-            here = node.location.file and node.location.file.name == str(file)
-            if here and node.kind == CursorKind.FUNCTION_DECL and node.is_definition():
-                self.statement(list(node.get_children())[-1])
+        self.unit = Index.create().parse(str(file), args=[*options, *self.language, "-isystem", own_headers()],
+                                         options=TranslationUnit.PARSE_PRECOMPILED_PREAMBLE)
+        if found := self.errors():
+            raise ValueError(f"Clang does not read it: {found[0]}")
+        for node in self.unit.cursor.get_children():
+            if node.location.file and node.location.file.name == str(file):
+                self.declaration(node)
+
+    def errors(self):
+        return [d for d in self.unit.diagnostics if d.severity >= d.Error]
+
+    def declaration(self, node):
+        if node.kind == CursorKind.FUNCTION_DECL and node.is_definition():
+            self.statement(list(node.get_children())[-1])
 
     def span(self, node):
         return node.extent.start.offset, node.extent.end.offset
@@ -169,10 +177,10 @@ class Finder:
         if kind == CursorKind.UNEXPOSED_EXPR and re.match(r"[.\[]", self.text(node)):  # of an initializer: [X] = value
             children = children[-1:]
         sign = self.sign(node)
-        if kind in (CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR):
-            left, right = (self.operand(child) for child in children)
+        if sides := self.sides(node):
+            left, right = (self.operand(side) for side in sides)
             for operator, new in OTHER.get(sign, []):
-                if new not in "+-" or not is_pointer(children[1]):  # two pointers have only a `-`, `n + p` only a `+`
+                if new not in "+-" or not is_pointer(sides[1]):  # two pointers have only a `-`, `n + p` only a `+`
                     self.add(node, operator, f"{left} {new} {right}")
         elif kind == CursorKind.UNARY_OPERATOR:
             self.unary(node, children[0])
@@ -184,11 +192,16 @@ class Finder:
         for child in children:
             self.expression(child)
 
+    def sides(self, node):
+        is_binary = node.kind in (CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR)
+        return tuple(node.get_children()) if is_binary else None
+
     def sign(self, node):
         """The operator between both sides, '' where a macro hides it."""
-        if node.kind not in (CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR):
+        sides = self.sides(node)
+        if sides is None:
             return ""
-        left, right = node.get_children()
+        left, right = sides
         between = self.source[self.span(left)[1]:self.span(right)[0]].decode()
         between = re.sub(r"/\*.*?\*/|//[^\n]*", "", between, flags=re.S).strip()
         return between if between in OTHER or between == "=" else ""

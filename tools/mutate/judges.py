@@ -1,10 +1,11 @@
 """Who judges what, by its kind."""
 
+import native
 from common import ROOT
 
-import firmware
 import rtl
 
 
 def of(module, tree):
-    return {"rtl": rtl.Judge, "firmware": firmware.Judge}[module.kind](ROOT, tree, module)
+    judge = rtl.Judge if module.kind == "rtl" else native.Judge
+    return judge(ROOT, tree, module)

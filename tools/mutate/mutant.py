@@ -6,6 +6,8 @@ import hashlib
 import itertools
 import random
 
+SOURCES = (".c", ".cpp", ".h")
+
 
 @dataclasses.dataclass(frozen=True)
 class Place:
@@ -64,14 +66,17 @@ def draw(mutants, count, seed):
     return first, rest
 
 
-def sources_of(path):
-    """The file, or of a folder the C files in it."""
-    return sorted(path.glob("*.c")) if path.is_dir() else [path]
+def sources_of(root, module):
+    """The file, or of a folder the C or C++ files in it that the module's patterns choose."""
+    path = root / module.file
+    if not path.is_dir():
+        return [path]
+    return sorted({file for pattern in module.files for file in path.glob(pattern) if file.suffix in SOURCES})
 
 
-def source_hash(path):
+def source_hash(root, module):
     """Of what is mutated: it is stale when this differs."""
-    return hash_of(*sources_of(path))
+    return hash_of(*sources_of(root, module))
 
 
 def hash_of(*parts):

@@ -6,6 +6,8 @@ tree is written.
 """
 
 import dataclasses
+import functools
+import os
 import pathlib
 import re
 import shlex
@@ -61,22 +63,39 @@ class Program:
         sources = [w for w in words if re.search(r"\.(sv|v|vlt)$", w)]
         self.models[prefix] = Model(prefix, mdir, sources, words, folder)
 
-    def readers(self, files):
-        """Objects whose compilation reads one of `files` (absolute), by ninja's log of dependencies."""
-        log, found, target = run(["ninja", "-t", "deps", *self.compiles], self.tree), [], None
-        for line in log.splitlines():
+    @functools.cached_property
+    def read(self):
+        """{object: the files (absolute) that its compilation reads}, by ninja's log of dependencies."""
+        found, target = {}, None
+        for line in run(["ninja", "-t", "deps", *self.compiles], self.tree).splitlines():
             if line and not line[0].isspace():
                 target = line.split(":")[0]
-            elif line.strip() and target not in found and str((self.tree / line.strip()).resolve()) in files:
-                found.append(target)
+                found[target] = set()
+            elif line.strip():
+                found[target].add(os.path.normpath(self.tree / line.strip()))
         return found
+
+    def readers(self, files):
+        """Objects whose compilation reads one of `files` (absolute)."""
+        return [target for target, read in self.read.items() if read & files]
+
+
+def of_several(source):
+    """CMake has joined files for the compiler (cmake/Headers.cmake, brick_together)."""
+    return re.fullmatch(r"unity_\d+_c(xx)?\.cx?x?", pathlib.Path(source).name) is not None
+
+
+def unjoined(source, root):
+    """The text of such a file, in which the include path says which files it joins."""
+    return pathlib.Path(source).read_text().replace(f'"{root}/', '"')
 
 
 class Overlay:
-    """Of `replaced` {path as the build knows it: file to take instead}, built below `out`."""
+    """Of `replaced` {path as the build knows it: file to take instead}, built below `out`. `headers`: a folder in which
+    those of them that are included stand, by their paths from the root of the sources."""
 
-    def __init__(self, tree, out, replaced, flags):
-        self.tree, self.out, self.flags = tree, out, flags
+    def __init__(self, tree, out, replaced, flags, headers=None, root=None):
+        self.tree, self.out, self.flags, self.headers, self.root = tree, out, flags, headers, root
         self.replaced = {str(pathlib.Path(old).resolve()): new for old, new in replaced.items()}
 
     def verilate(self, model):
@@ -103,7 +122,7 @@ class Overlay:
         models = [m for m in program.models.values()
                   if any(str((pathlib.Path(m.folder) / s).resolve()) in self.replaced for s in m.sources)
                   and (not m.prefix.startswith("Vboard_") or (boards and m.prefix != BIGGEST))]
-        includes, objects, headers = [], list(more), []
+        includes, objects, headers = [f"-I{self.headers}"] if self.headers else [], list(more), []
         for model in models:
             mdir = self.verilate(model)
             self.joined(model, mdir)
@@ -118,6 +137,10 @@ class Overlay:
                 words[words.index("-c") + 1] = str(own)
             elif str(source.resolve()) in self.replaced:
                 words[words.index("-c") + 1] = str(self.replaced[str(source.resolve())])
+            elif self.headers and of_several(source):
+                one = self.out / f"{target.replace('/', '_')}.cpp"
+                one.write_text(unjoined(source, self.root))
+                words[words.index("-c") + 1] = str(one)
             made = self.out / target.replace("/", "_")
             words[words.index("-o") + 1] = str(made)
             for option in ("-MF", "-MT"):

@@ -23,6 +23,7 @@ class Module:
     opinion: tuple
     board: tuple
     slip: tuple
+    files: tuple = ("*",)  # of the folder
 
 
 def tests(entries, sets):
@@ -45,18 +46,20 @@ def read(file=FILE):
         kinds[kind] = {
             name: Module(kind, name, row["file"], tuple(row.get("tops", [name])), row.get("proof", ""),
                          tests(row["opinion"], sets), tests(row.get("board", []), sets),
-                         tests(row.get("slip", []), sets))
+                         tests(row.get("slip", []), sets), tuple(row.get("files", ["*"])))
             for name, row in modules.items()}
     return kinds
 
 
 def choose(kind, names):
-    """The modules of a kind that have these names, all where there are none; 'again': of any kind."""
+    """The modules of a kind that have these names, all where there are none; 'again': of any kind, and a name may be
+    KIND.NAME."""
     kinds = read()
-    kinds["again"] = {name: module for modules in kinds.values() for name, module in modules.items()}
-    if kind not in kinds:
-        raise Unknown(f"no '{kind}' is mutated; there is: {', '.join(sorted(kinds))}")
-    unknown = [name for name in names if name not in kinds[kind]]
+    if kind not in [*kinds, "again"]:
+        raise Unknown(f"no '{kind}' is mutated; there is: {', '.join(sorted([*kinds, 'again']))}")
+    modules = [m for of, found in kinds.items() if kind in (of, "again") for m in found.values()]
+    known = {m: (m.name, f"{m.kind}.{m.name}") for m in modules}
+    unknown = [name for name in names if not any(name in called for called in known.values())]
     if unknown:
-        raise Unknown(f"{kind}: no module {', '.join(unknown)}; there is: {', '.join(kinds[kind])}")
-    return [module for name, module in kinds[kind].items() if not names or name in names]
+        raise Unknown(f"{kind}: no module {', '.join(unknown)}; there is: {', '.join(m.name for m in modules)}")
+    return [m for m, called in known.items() if not names or set(names) & set(called)]

@@ -22,6 +22,7 @@ Z = 1.6449  # a normal variable is below it 95 times in a hundred
 COLUMNS = ("module", "mutants", "judged", "equal", "outside", "alive", "score", "at least", "slip", "s", "seed",
            "commit")
 STALE = ", stale"
+WITH_SLIP = ("rtl", "model")  # these have another engine beside them
 MOST_OUTSIDE = 0.05  # of a module, without being listed
 HEAD = """# Mutants
 
@@ -30,21 +31,25 @@ What would the tests notice? A mutant is the source with one place changed: an o
 case item, an enable, a reset, a condition, a statement left out. `./dev mutate rtl NAME` finds the places with slang's
 parser, puts many mutants into one Verilated model, of which a number chooses one, and runs the module's tests on each;
 `./dev mutate firmware FOLDER` does so with Clang's parser, the native build of the firmware and the tests that come to
-the place. Number 0 is the source as it is and passes. The first failure stops.
+the place; `./dev mutate model FOLDER` with the SystemC model, `./dev mutate host NAME` with the host library, the
+Ethernet server and the models of its buses. Number 0 is the source as it is and passes. The first failure stops.
 
-- **score**: killed of killed and alive. A mutant of RTL stands in the RTL alone and every comparison of RTL and model
-  is off: the tests have values of their own, the proof has its rules. This holds when both sides misread a rule alike.
-- **slip**: with lock-step and component tests on what was left: a mistake in the RTL alone.
-- **equal**: proved, without a bound, to be the module it was made from; of C, the same object code at -O2; out of the
-  count, another takes its place.
-- **outside**: ended by the wall clock or a crash without a report that names its place; out of the count too.
+- **score**: killed of killed and alive. A mutant of RTL or of the model stands in that engine alone and every
+  comparison of the two is off: the tests have values of their own, the proof has its rules. This holds when both sides
+  misread a rule alike.
+- **slip**: with lock-step and component tests on what was left: a mistake in one engine alone.
+- **equal**: proved, without a bound, to be the module it was made from; of C and C++, the same object code at -O2; out
+  of the count, another takes its place.
+- **outside**: ended by its limit of processor time, or a crash without a report that names its place; out of the count
+  too.
 - **at least**: the lower end of what the score of all mutants of the module may be, at 95 % (Wilson's interval, one
   side), from those drawn; the score itself where all were judged.
 - **stale**, at the commit: the file has changed since it was judged.
 
 Not mutated: what is fixed before it runs (widths, parameters, generate blocks, sensitivity lists; initial values of
-static variables, labels, macros with arguments); `board_sim` and the test bench; of the firmware what has no native
-build. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the options.
+static variables, labels, macros with arguments, what is `constexpr`); `board_sim` and the test bench; of the firmware
+what has no native build. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the
+options.
 """
 
 
@@ -135,7 +140,8 @@ def problems_of(results, given):
     return problems
 
 
-def page(results, given):
+def page(results, given, modules):
+    """`modules`: {kind: {name: Module}}"""
     lines = [HEAD]
     for kind in sorted({kind for kind, _ in results}):
         title = {"rtl": "RTL"}.get(kind, kind.capitalize())
@@ -148,17 +154,17 @@ def page(results, given):
             building = sum(h["build_seconds"] for h in heads)
             everything, seconds = everything + rows, seconds + score.seconds + building
             complete = score.counted() + score.equal + score.outside == head["mutants"]
-            tree = head["commit"] + (" and changes" if head["dirty"] else "")
-            if any(h["source"] != source_hash(ROOT / h["file"]) for h in heads):
+            tree, slip = head["commit"] + (" and changes" if head["dirty"] else ""), of in WITH_SLIP
+            if any(h["source"] != source_hash(ROOT, modules[of][name]) for h in heads):
                 tree += STALE
             lines.append("| " + " | ".join(map(str, [
                 f"`{name}`", head["mutants"], len(rows), score.equal, score.outside, score.alive,
-                *score.cells(complete, of == "rtl"), f"{score.seconds + building:.0f}", head["seed"], tree])) + " |")
+                *score.cells(complete, slip), f"{score.seconds + building:.0f}", head["seed"], tree])) + " |")
         score = Score(everything)
         lines.append("| " + " | ".join(map(str, [
             "together", sum(h[0]["mutants"] for (of, _), (h, _) in results.items() if of == kind), len(everything),
-            score.equal, score.outside, score.alive, *score.cells(False, kind == "rtl"), f"{seconds:.0f}", "",
-            ""])) + " |")
+            score.equal, score.outside, score.alive, *score.cells(False, kind in WITH_SLIP), f"{seconds:.0f}",
+            "", ""])) + " |")
         lines += ["", "### Survivors", ""]
         if score.alive == 0:
             lines.append("None.")
@@ -181,7 +187,7 @@ def unmarked(text):
 def main(check, release):
     kinds, given = plan.read(), reasons()
     results = gather(kinds)
-    text, problems, still_open = page(results, given), problems_of(results, given), open_of(results, given)
+    text, problems, still_open = page(results, given, kinds), problems_of(results, given), open_of(results, given)
     if release:
         problems += still_open
     if check and (not PAGE.exists() or unmarked(PAGE.read_text()) != unmarked(text)):

@@ -25,7 +25,7 @@ class Stage:
     name: str
     tests: tuple
     boards: bool
-    compare: bool
+    compare: str
 
 
 class Judge:
@@ -38,8 +38,8 @@ class Judge:
         self.out = root / "build/mutate" / module.name
         self.designs = [Filter(root, top, module.file, self.out / f"filter_{top}", FILTER_LIMIT)
                            for top in module.tops]
-        self.stages = [Stage("tests", module.opinion, False, False), Stage("board", module.board, True, False),
-                       Stage("slip", module.slip, True, True)]
+        self.stages = [Stage("tests", module.opinion, False, "off"), Stage("board", module.board, True, "off"),
+                       Stage("slip", module.slip, True, "on")]
         self.binaries, self.filters, self.limits, self.build_seconds = {}, {}, {}, 0.0
         self.built, self.lock = set(), threading.Lock()
 
@@ -79,10 +79,10 @@ class Judge:
         """Number 0, the module as it is, passes. What it fails when nothing is compared is a control of the
         comparison, and judges nobody."""
         binary = self.binaries[(tests.program, stage.boards)]
-        verdict = runner.run(binary, tests, 0, ZERO_LIMIT, True, self.root)
+        verdict = runner.run(binary, tests, 0, ZERO_LIMIT, "on", self.root)
         if verdict.status != ALIVE:
             raise BadBuild(f"number 0, the module as it is, does not pass: {verdict.by}")
-        if not stage.compare:
+        if stage.compare == "off":
             controls = runner.failures(binary, tests, ZERO_LIMIT, self.root)
             left_out = ("" if not controls else ":" if "-" in tests.filter else "-") + ":".join(controls)
             self.filters[(stage.name, tests)] = dataclasses.replace(tests, filter=tests.filter + left_out)

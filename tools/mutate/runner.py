@@ -5,12 +5,16 @@ names its place. Wall-time limits and other crashes are neither killed nor alive
 """
 
 import dataclasses
+import math
 import os
 import re
+import signal
 import subprocess
-import time
+import tempfile
+import threading
 
 ALIVE, KILLED, EQUAL, OUTSIDE = "alive", "killed", "equal", "outside"
+ASLEEP, CROWDED = 60, 20  # s, times: a program that uses no processor, or shares it, ends too
 REPORTS = re.compile(r"^(\S+:\d+(?::\d+)?: runtime error: .*|.*ERROR: AddressSanitizer: .*|\S+: Assertion `.*"
                      r"|\S+:\d+: .*Assertion.*failed.*|%Error: \S+:\d+: Assertion failed.*)$", re.M)
 
@@ -23,7 +27,7 @@ class BadBuild(Exception):
 class Verdict:
     status: str
     by: str  # the test that failed first, or why it is outside
-    seconds: float
+    seconds: float  # of the processor
 
 
 @dataclasses.dataclass(frozen=True)
@@ -35,17 +39,26 @@ class Tests:
 
 
 def run(binary, tests, number, limit, compare, folder, **more):
-    """`compare`: rigs with both engines compare them. `more`: of the environment."""
-    environment = {**os.environ, **more, "BRICK_MUTANT": str(number), "BRICK_COMPARE": "on" if compare else "off"}
+    """`compare`: what rigs with both engines do, see testbench/unit/rtl/comparison.h. `more`: of the environment.
+    `limit`: seconds of the processor, so that what else runs on the machine decides nothing."""
+    environment = {**os.environ, **more, "BRICK_MUTANT": str(number), "BRICK_COMPARE": compare}
     environment.pop("GTEST_TOTAL_SHARDS", None)
-    begin = time.monotonic()
-    command = [str(binary), f"--gtest_filter={tests.filter}", "--gtest_brief=1", "--gtest_fail_fast"]
-    try:
-        done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, timeout=limit, text=True, errors="replace")
-    except subprocess.TimeoutExpired:
-        return Verdict(OUTSIDE, f"{tests.program}: no end within {limit:.0f} s", time.monotonic() - begin)
-    return judge(done.returncode, done.stdout, tests, time.monotonic() - begin)
+    command = ["prlimit", f"--cpu={math.ceil(limit)}", str(binary), f"--gtest_filter={tests.filter}", "--gtest_brief=1",
+               "--gtest_fail_fast"]
+    with tempfile.TemporaryFile() as said:
+        program = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=said,
+                                   stderr=subprocess.STDOUT)
+        watch = threading.Timer(ASLEEP + CROWDED * limit, program.kill)
+        watch.start()
+        _, status, used = os.wait4(program.pid, 0)
+        watch.cancel()
+        program.returncode = os.waitstatus_to_exitcode(status)
+        said.seek(0)
+        text = said.read().decode(errors="replace")
+    seconds = used.ru_utime + used.ru_stime
+    if program.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        return Verdict(OUTSIDE, f"{tests.program}: no end within {limit:.0f} s", seconds)
+    return judge(program.returncode, text, tests, seconds)
 
 
 def failures(binary, tests, limit, folder):

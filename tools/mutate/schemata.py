@@ -1,5 +1,9 @@
 """Many mutants in one text, of which the number chooses one when the program runs; or one of them alone."""
 
+import pathlib
+
+CHOSEN = pathlib.Path(__file__).parent / "chosen.h"
+
 
 class Verilog:
     """The number is a variable of a package, read from the environment when the model is made. Only Verilator reads
@@ -19,15 +23,15 @@ class Verilog:
 
 
 class C:
-    """The number is a variable of reached.cpp, which also keeps what was reached."""
+    """C or C++. The number is a variable of reached.cpp, which also keeps what was reached."""
 
     def __init__(self, file):
-        self.head = ("extern unsigned brick_mutant_number;\nextern unsigned char brick_mutant_reached[];\n"
-                     "static inline int brick_mutant(unsigned n) {\n  brick_mutant_reached[n] = 1;\n"
-                     f'  return brick_mutant_number == n;\n}}\n#line 1 "{file}"\n')
+        self.head = f'#include "{CHOSEN}"\n#line 1 "{file}"\n'
 
     def expression(self, mutants, inner):
         chosen = "".join(f"brick_mutant({m.number}) ? ({m.place.new}) : " for m in mutants)
+        if any(m.place.operator == "condition" for m in mutants):  # both sides of `?` have one type
+            inner = f"({inner}) ? 1 : 0"
         return f"({chosen}({inner}))"
 
     def statement(self, mutants, inner):

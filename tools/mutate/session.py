@@ -90,7 +90,7 @@ class Session:
 
     def save(self, taken, done=False):
         head = {"module": self.judge.module.name, "file": self.judge.module.file, "inputs": self.inputs,
-                "source": source_hash(ROOT / self.judge.module.file),
+                "source": source_hash(ROOT, self.judge.module),
                 "seed": self.options.seed, "mutants": len(self.judge.mutants), "count": self.count,
                 "done": done, **self.tree,
                 "time": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),

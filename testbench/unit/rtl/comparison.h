@@ -1,5 +1,6 @@
-// Whether rigs with RTL and model side by side compare them. Off only in `./dev mutate`, which asks what would hold a
-// rule that both had misread (docs/mutation.md); the negative controls of the comparisons fail then.
+// What rigs with RTL and model side by side do: they compare the two, unless `./dev mutate` asks what would hold a rule
+// that both had misread (docs/mutation.md); the negative controls of the comparisons fail then. What a test reads of
+// such a rig is the RTL's, or the model's while it is the model that is judged: the RTL stands still then.
 #pragma once
 
 #include <cstdlib>
@@ -7,12 +8,17 @@
 
 namespace brick {
 
+inline std::string_view comparison() {
+  static const char* const text = std::getenv("BRICK_COMPARE");
+  return text == nullptr ? "on" : text;
+}
 inline bool engines_compared() {
-  static const bool compared = [] {
-    const char* text = std::getenv("BRICK_COMPARE");
-    return text == nullptr || std::string_view(text) != "off";
-  }();
+  static const bool compared = comparison() == "on";
   return compared;
+}
+inline bool model_judged() {
+  static const bool judged = comparison() == "model";
+  return judged;
 }
 
 }  // namespace brick

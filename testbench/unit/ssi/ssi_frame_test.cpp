@@ -66,6 +66,27 @@ TYPED_TEST(SsiFrames, BrickReadsEveryNumberOfBitsWithParityAndGray) {
   }
 }
 
+// The first ends with the 13th rise, 13 periods of 29.5 ticks after the trigger, the second with the 21st.
+TYPED_TEST(SsiFrames, AShorterWordIsLoadedWithoutTheLongerBesideIt) {
+  BRICK_COVERS("SSI-1");
+  this->rig.reset(false);
+  this->rig.write(true, brick_group(1), 0x180302);  // 4 MHz, falling SERVO
+  this->rig.write(true, brick_word(1), 0x1400 | 12);
+  this->rig.write(true, brick_word(2), 0x1400 | 20);
+  this->rig.data(0xFF);
+  this->trigger();
+  this->rig.run(21 * 30 + kRest + 10);
+  EXPECT_EQ(this->rig.read(false, brick_word(1)), 0xFFFu);
+  EXPECT_EQ(this->rig.read(false, brick_word(2)), 0xFFFFFu);
+  this->rig.data(0);
+  const Tick seen = this->trigger();
+  this->rig.run(seen + 17 * 30 - this->rig.now());
+  EXPECT_EQ(this->rig.read(false, brick_word(1)), 0u);
+  EXPECT_EQ(this->rig.read(false, brick_word(2)), 0xFFFFFu) << "still shifted in";
+  this->rig.run(5 * 30);
+  EXPECT_EQ(this->rig.read(false, brick_word(2)), 0u);
+}
+
 TYPED_TEST(SsiFrames, BrickTellsAParityError) {
   BRICK_COVERS("SSI-1");
   for (const unsigned parity : {1u, 2u}) {

@@ -75,6 +75,7 @@ class ModelSsiRig {
     ssi_.servo = servo;
   }
   void data(unsigned pins) {
+    if (ssi_.data == pins) return;  // it sleeps on
     ssi_.advance(now_);
     ssi_.data = static_cast<std::uint8_t>(pins);
   }

@@ -3,6 +3,7 @@
 
 import pathlib
 import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -18,6 +19,7 @@ except ImportError as missing:
     print(f"skipped: {missing.name} is not installed (./dev setup)")
     sys.exit(77)
 
+import cpp_source  # noqa: E402
 import equal  # noqa: E402
 import mutant  # noqa: E402
 import plan  # noqa: E402
@@ -96,6 +98,75 @@ class Places(unittest.TestCase):
             verilog.places(b"module m; always_comb begin endmodule")
 
 
+CPP = """#pragma once
+struct Field { unsigned get(unsigned w) const { return w; } bool operator<(const Field&) const { return true; } };
+constexpr unsigned kTop = 9, kShort = kTop - 1;
+constexpr Field kField{};
+enum class State { kIdle, kBusy };
+class Counter {
+ public:
+  Counter() : last_(kTop + 1) {}
+  constexpr static unsigned fixed(unsigned n) { return n + 1; }
+  template <class T>
+  bool less(T n) const {
+    if (const auto* p = this; p != nullptr) return n < last_;
+    return kField < kField;
+  }
+  unsigned next(Field* field) {
+    const unsigned size = 2;
+    unsigned table[size] = {0, 1};
+    auto twice = [](unsigned n) { return n * 2; };
+    if (!field) return table[0];
+    switch (state_) {
+      case State::kIdle:
+        break;
+      default:
+        count_ = twice(count_);
+    }
+    return kField.get(count_);
+  }
+
+ private:
+  State state_ = State::kIdle;
+  unsigned count_ = 0, last_;
+};
+"""
+
+
+class PlacesOfCpp(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with tempfile.TemporaryDirectory() as folder:
+            cls.file = pathlib.Path(folder) / "counter.h"
+            cls.file.write_text(CPP)
+            cls.mutants = cpp_source.mutants(cls.file, "counter.h", ["-std=c++17"], 1)
+
+    def found(self, line):
+        return [m.change for m in self.mutants if CPP.splitlines()[m.line - 1].strip().startswith(line)]
+
+    def test_in_headers_constructors_templates_and_lambdas(self):
+        self.assertEqual(self.found("Counter()"), ["kTop => (kTop + 1)", "kTop + 1 => kTop - 1", "1 => 2"])
+        self.assertEqual(self.found("if (const auto"), ["p != nullptr => p == (nullptr)", "n < last_ => n <= last_",
+                                                        "n < last_ => n >= last_"])
+        self.assertIn("n * 2 => n / 2", self.found("auto twice"))
+        self.assertEqual(self.found("unsigned count_"), ["0 => 1"])
+
+    def test_selectors_of_enumerations_never_take_a_case(self):
+        self.assertEqual(self.found("switch"), ["state_ => brick_without(State::kIdle, state_)"])
+
+    def test_nothing_that_is_fixed_or_does_not_compile(self):
+        self.assertEqual(self.found("constexpr"), [])
+        self.assertEqual(self.found("return kField < kField"), [])  # it has no `<=`
+        self.assertEqual(self.found("const unsigned size"), [])  # of an array
+
+    def test_text_with_all_of_them_is_cpp(self):
+        text = schemata.write(CPP.encode(), self.mutants, schemata.C(self.file))
+        with tempfile.TemporaryDirectory() as folder:
+            one = pathlib.Path(folder) / "all.cpp"
+            one.write_bytes(text)
+            subprocess.run(["c++", "-std=c++17", "-fsyntax-only", "-w", str(one)], check=True)
+
+
 class Texts(unittest.TestCase):
     def setUp(self):
         self.mutants = mutant.mutants_of("m.sv", MODULE, verilog.places(MODULE))
@@ -146,6 +217,16 @@ class Verdicts(unittest.TestCase):
 
     def test_a_crash_without_one_is_outside(self):
         self.assertEqual(self.judge(-11, ""), ("outside", "unit_m: ends with status -11"))
+
+    def test_its_limit_is_time_of_the_processor(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for script, status, by in (("while true; do :; done", "outside", "unit_m: no end within 1 s"),
+                                       ("sleep 2; echo '[==========] 1 test from'", "alive", "")):
+                program = pathlib.Path(folder) / "program"
+                program.write_text(f"#!/bin/sh\n{script}\n")
+                program.chmod(0o755)
+                verdict = runner.run(program, self.TESTS, 0, 1, "on", folder)
+                self.assertEqual((verdict.status, verdict.by), (status, by))
 
     def test_no_test_at_all_is_outside(self):
         self.assertEqual(self.judge(0, "[==========] 0 tests from 0 test suites ran.\n")[0], "outside")
@@ -265,9 +346,10 @@ class Reports(unittest.TestCase):
 
     def test_of_a_file_that_has_changed_since_results_are_stale(self):
         row = {**self.ROW, "status": "killed", "stage": "tests"}
+        modules = {"rtl": dict.fromkeys(("now", "before"), plan.choose("rtl", ["ssi_edges"])[0])}
         results = {("rtl", name): ([{**self.HEAD, "source": source}], [row]) for name, source in (
             ("now", mutant.hash_of(TOOLS.parent / self.HEAD["file"])), ("before", "0123456789abcdef"))}
-        text = report.page(results, {})
+        text = report.page(results, {}, modules)
         self.assertRegex(text, r"`now` .* 3 \| 1 \| c \|")
         self.assertRegex(text, r"`before` .* 3 \| 1 \| c, stale \|")
         self.assertEqual(report.unmarked(text).count("3 | 1 | c |"), 2)
@@ -287,9 +369,13 @@ class Names(unittest.TestCase):
         with self.assertRaisesRegex(plan.Unknown, "no module pic_8260; there is: .*pic_8259"):
             plan.choose("rtl", ["pic_8259", "pic_8260"])
 
+    def test_a_name_of_two_kinds_is_both_or_says_which(self):
+        self.assertEqual({m.kind for m in plan.choose("again", ["host"])}, {"firmware", "model"})
+        self.assertEqual([m.kind for m in plan.choose("again", ["model.host"])], ["model"])
+
     def test_every_module_of_the_plan_has_its_file(self):
-        for module in plan.choose("rtl", []):
-            self.assertTrue((TOOLS.parent / module.file).exists(), module.file)
+        for module in plan.choose("again", []):
+            self.assertTrue(mutant.sources_of(TOOLS.parent, module), module.file)
             self.assertTrue(module.opinion or module.board, module.name)
             if module.proof:
                 self.assertTrue((TOOLS.parent / f"testbench/formal/{module.proof}.sv").exists(), module.proof)

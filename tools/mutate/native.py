@@ -1,0 +1,265 @@
+"""Judges the mutants of one folder of C or C++ by the tests that come to them, the quick ones first. What none of them
+kills is compiled alone: where the object code is that of the original it is no mutant."""
+
+import collections
+import dataclasses
+import fcntl
+import shlex
+import subprocess
+import threading
+import time
+
+import c_source
+import cpp_source
+import overlay
+import runner
+import schemata
+from common import ROOT
+from mutant import hash_of, mutants_of, sources_of
+from runner import ALIVE, EQUAL, Tests, Verdict
+
+ZERO_LIMIT, COMPILE_LIMIT = 300, 120  # s
+QUICK = 100  # ms; tests that take longer come after all that do not
+NAMES = 300  # of tests in one call
+TOOLS = ROOT / "tools/mutate"
+OPTIMIZED = ["-O2", "-g0", "-w"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Kind:
+    """`compare`: what rigs with both engines do. `more`: of the environment. `flags`: of the compiler."""
+
+    compare: str = "on"
+    more: dict = dataclasses.field(default_factory=dict)
+    flags: tuple = ("-w",)
+
+
+CHECKED = ("-w", "-D_GLIBCXX_ASSERTIONS")  # an index outside says so
+KINDS = {"firmware": Kind(more={"BRICK_RANDOM_PATHS": "60"}),  # of 2000, which take as long as all other tests
+         "model": Kind(compare="model", flags=CHECKED),
+         "host": Kind(flags=CHECKED)}
+
+
+class Judge:
+    spare = 100  # mutants to draw on when one is equal; a folder has thousands, each slows all tests
+
+    def __init__(self, root, tree, module):
+        self.root, self.tree, self.module, self.kind = root, tree, module, KINDS[module.kind]
+        self.out = root / "build/mutate" / f"{module.kind}_{module.name}"
+        self.alone = locked(self.out)
+        self.stages = [("tests", module.opinion, self.kind.compare), ("slip", module.slip, "on")]
+        self.programs = {t.program: overlay.Program(tree, t.program) for _, tests, _ in self.stages for t in tests}
+        self.commands = self.compilations()
+        self.sources = {file: (root / file).read_bytes() for file in self.commands}
+        self.mutants = []
+        for file in self.commands:
+            self.mutants += self.mutants_in(file, len(self.mutants) + 1)
+        self.lock, self.build_seconds = threading.Lock(), 0.0
+        self.replaced, self.built, self.objects = {}, {}, {}
+        self.reached = collections.defaultdict(list)  # of a stage and a mutant's number [(ms, program, test)]
+
+    def compilations(self):
+        """{file: commands that read it} of the folder's files that the programs are made of, those of libraries first:
+        what tests alone read is of no interest to the object code."""
+        found = collections.defaultdict(dict)
+        wanted = {str(path) for path in sources_of(self.root, self.module)}
+        for program in self.programs.values():
+            for target in program.readers(wanted):
+                command = program.compiles[target]
+                for path in program.read[target] & wanted:
+                    found[path][command[command.index("-c") + 1]] = command
+        def of_tests(command):
+            return "/testbench/unit/" in command[command.index("-c") + 1]
+        chosen = {}
+        for path, commands in sorted(found.items()):
+            own = [c for c in commands.values() if not of_tests(c)]
+            chosen[path[len(str(self.root)) + 1:]] = own or list(commands.values())[:1]
+        return chosen
+
+    def mutants_in(self, file, first):
+        options = parser_options(self.commands[file][0])
+        if file.endswith(".c"):
+            return mutants_of(file, self.sources[file], c_source.Finder(self.root / file, options).places, first)
+        return cpp_source.mutants(self.root / file, file, options, first)
+
+    def inputs(self):
+        """A hash of all that decides: the folder's files, the programs as built, these tools."""
+        return hash_of(*self.sources.values(), *(self.tree / "bin" / name for name in sorted(self.programs)),
+                       repr(self.module), *sorted(TOOLS.glob("*.py")), TOOLS / "reached.cpp", TOOLS / "chosen.h")
+
+    def write(self, chosen):
+        """The files with `chosen` in them, of which build() makes programs."""
+        by_file = collections.defaultdict(list)
+        for mutant in chosen:
+            by_file[mutant.file].append(mutant)
+        self.replaced = {}
+        for file, mutants in by_file.items():
+            made = self.out / "source" / file
+            made.parent.mkdir(parents=True, exist_ok=True)
+            made.write_bytes(schemata.write(self.sources[file], mutants, schemata.C(self.root / file)))
+            self.replaced[self.root / file] = made
+        for old in (self.out / "source").rglob("*.*"):  # of another run; the include path would find it
+            if old not in self.replaced.values():
+                old.unlink()
+
+    def build(self):
+        """The programs, once, and number 0 in each: it passes and says which tests come to which mutant."""
+        with self.lock:
+            if self.built:
+                return
+            begin, built = time.monotonic(), {name: self.program(name) for name in self.programs}
+            for stage, programs, compare in self.stages:
+                for tests in programs:
+                    self.pass_zero(stage, tests, compare, built[tests.program])
+            self.built = built
+            self.build_seconds += time.monotonic() - begin
+
+    def program(self, name):
+        folder, program = self.out / "tests", self.programs[name]
+        folder.mkdir(parents=True, exist_ok=True)
+        one = overlay.Overlay(self.tree, folder, self.replaced, list(self.kind.flags), self.out / "source", self.root)
+        return one.build(program, False, [self.recorder(program)])
+
+    def recorder(self, program):
+        """reached.cpp, compiled as the program's own files are."""
+        command = next(c for c in program.compiles.values()
+                       if c[c.index("-c") + 1].endswith((".cpp", ".cxx")) and "c++-header" not in c)
+        made = self.out / "reached.o"
+        overlay.run([*plain(command, TOOLS / "reached.cpp", made), f"-DBRICK_MUTANTS={len(self.mutants)}"], self.tree)
+        return str(made)
+
+    def run(self, binary, tests, number, limit, compare, **more):
+        return runner.run(binary, tests, number, limit, compare, self.root, **self.kind.more, **more)
+
+    def pass_zero(self, stage, tests, compare, binary):
+        """Number 0, the folder as it is."""
+        table = self.out / f"{tests.program}.reached"
+        verdict = self.run(binary, tests, 0, ZERO_LIMIT, compare, BRICK_REACHED=str(table))
+        if verdict.status != ALIVE:
+            raise runner.BadBuild(f"number 0, the folder as it is, does not pass: {verdict.by}")
+        for line in table.read_text().splitlines():
+            test, ms, *numbers = line.split()
+            for number in numbers:
+                self.reached[stage, int(number)].append((int(ms), tests.program, test))
+
+    def calls(self, stage, number):
+        """[(Tests, the ms that they take of number 0)]: the quick ones of all programs, then the others; the program of
+        which least time is needed comes first."""
+        groups = collections.defaultdict(list)
+        for ms, name, test in sorted(self.reached[stage, number]):
+            groups[(ms >= QUICK, name)].append((ms, test))
+        order = sorted(groups.items(), key=lambda item: (item[0][0], sum(ms for ms, _ in item[1]), item[0][1]))
+        for (_, name), group in order:
+            for at in range(0, len(group), NAMES):
+                part = group[at:at + NAMES]
+                yield Tests(name, ":".join(test for _, test in part)), sum(ms for ms, _ in part)
+
+    def by_tests(self, stage, compare, mutant):
+        """By those that come to it; killed by none where there are none."""
+        self.build()
+        seconds, verdict = 0.0, Verdict(ALIVE, "", 0.0)
+        for tests, ms in self.calls(stage, mutant.number):
+            verdict = self.run(self.built[tests.program], tests, mutant.number, 5 + ms / 100, compare)
+            seconds += verdict.seconds
+            if verdict.status != ALIVE:
+                break
+        reached = self.reached[stage, mutant.number]
+        return dataclasses.replace(verdict, by=verdict.by if reached else "no test comes to it", seconds=seconds)
+
+    def again(self, mutant, by):
+        """`by`: 'PROGRAM: TEST', which passes with number 0; nothing else is built. None: there is no such test now."""
+        name, _, test = by.partition(": ")
+        if name not in self.programs:
+            return None
+        if name not in self.built:
+            self.built[name] = self.program(name)
+        tests = Tests(name, test)
+        verdicts = [self.run(self.built[name], tests, n, ZERO_LIMIT, self.kind.compare) for n in (0, mutant.number)]
+        if verdicts[0].by.endswith(runner.no_test(tests)):
+            return None
+        if verdicts[0].status != ALIVE:
+            raise runner.BadBuild(f"number 0, the folder as it is, does not pass: {verdicts[0].by}")
+        return verdicts[1]
+
+    def by_filter(self, mutant):
+        """Equal: the object code is, of all that reads the file."""
+        begin, source = time.monotonic(), self.sources[mutant.file]
+        mutated = schemata.single(source, mutant)
+        same = all(self.original(mutant.file, n) == self.object_code(mutant.file, n, str(mutant.number), mutated)
+                   for n in range(len(self.commands[mutant.file])))
+        return Verdict(EQUAL if same else ALIVE, "same object code" if same else "", time.monotonic() - begin)
+
+    def original(self, file, reader):
+        if (file, reader) not in self.objects:
+            self.objects[file, reader] = self.object_code(file, reader, f"0_{file.replace('/', '_')}",
+                                                          self.sources[file])
+        return self.objects[file, reader]
+
+    def object_code(self, file, reader, folder, source):
+        """Of a file that reads `file`, with `source` in its place."""
+        folder, command = self.out / "alone" / folder, self.commands[file][reader]
+        (folder / file).parent.mkdir(parents=True, exist_ok=True)
+        (folder / file).write_bytes(source)
+        path = str((self.tree / command[command.index("-c") + 1]).resolve())
+        if path == str(self.root / file):
+            path = file
+        elif overlay.of_several(path):
+            (folder / "several.cpp").write_text(overlay.unjoined(path, self.root))
+            path = "several.cpp"
+        words = [w for w in plain(command, path, "alone.o") if not w.startswith(("-fsanitize", "-O", "-g"))]
+        words = [f"-I{(self.tree / w[2:]).resolve()}" if w.startswith("-I") else w for w in words]
+        compiler = next(i for i, w in enumerate(words) if w.endswith(("++", "cc", "gcc")) and not w.endswith("ccache"))
+        words[compiler + 1:compiler + 1] = ["-I."]
+        try:
+            done = subprocess.run([*words, *OPTIMIZED], cwd=folder, capture_output=True, text=True,
+                                  timeout=COMPILE_LIMIT, check=False)
+        except subprocess.TimeoutExpired as late:
+            raise overlay.NoBuild(f"{shlex.join(words)}: no end within {COMPILE_LIMIT} s") from late
+        if done.returncode != 0:
+            raise overlay.NoBuild(f"{shlex.join(words)}\n{done.stderr[-2000:]}")
+        return (folder / "alone.o").read_bytes()
+
+    def judge(self, mutant):
+        """(stage, verdict). What lock-step alone kills has stage 'slip' and counts as alive for the score."""
+        killed = self.by_tests("tests", self.kind.compare, mutant)
+        if killed.status != ALIVE:
+            return "tests", killed
+        equal = self.by_filter(mutant)
+        seconds = killed.seconds + equal.seconds
+        if equal.status == EQUAL:
+            return "filter", dataclasses.replace(equal, seconds=seconds)
+        slip = self.by_tests("slip", "on", mutant) if self.module.slip else killed
+        if slip.status != ALIVE:
+            return "slip", dataclasses.replace(slip, seconds=seconds + slip.seconds)
+        return "", dataclasses.replace(killed, seconds=seconds)
+
+
+def locked(folder):
+    """Held until this process ends: the programs that are built there are one's own."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = (folder / "lock").open("w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as held:
+        raise runner.BadBuild(f"{folder}: another ./dev mutate is at work there") from held
+    return lock
+
+
+def parser_options(command):
+    """What of a compiler's command decides how its source reads."""
+    options = []
+    for word, before in zip(command, ["", *command], strict=False):
+        if word.startswith(("-I", "-D", "-std=", "-isystem")) or before == "-isystem":
+            options.append(word)
+    return options
+
+
+def plain(command, source, made):
+    """A compiler's command for another file, without the notes that ninja takes of it."""
+    words, skip = [], False
+    for word in command:
+        if not skip and word not in ("-MD", "-MF", "-MT"):
+            words.append(word)
+        skip = word in ("-MF", "-MT")
+    words[words.index("-c") + 1], words[words.index("-o") + 1] = str(source), str(made)
+    return words
