@@ -169,9 +169,9 @@ TEST_F(Gather, I5000Of1Wraps) {
   EXPECT_EQ(host_lines("LIST GATHER"), (Lines{at(5), at(6), at(3), at(4)}));
 }
 
-// The words behind I5051 are I5061's.
+// I5052 and on are reserved.
 TEST_F(Gather, I5050AndI5051AloneChoose) {
-  ASSERT_EQ(host("I5061..5076=$FFFFFF I5049=1 I5050=0 I5051=0 DEF GAT 20"), "");
+  ASSERT_EQ(host("I5052..5060=1 I5049=1 I5050=0 I5051=0 DEF GAT 20"), "");
   EXPECT_EQ(host("GATHER"), "ERR003");
   host_port_character(0x05);
   platform::background(1);

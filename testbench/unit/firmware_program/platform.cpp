@@ -9,6 +9,7 @@
 
 extern "C" {
 #include "firmware/hal/gate_ic.h"
+#include "firmware/host/line_input.h"
 #include "firmware/image/background_pass.h"
 #include "firmware/image/start.h"
 #include "rtl/regs/brick_regs.h"
@@ -35,6 +36,8 @@ void no_amplifiers() {
 void power_up() {
   fake_hal_power_on(0x3);
   no_amplifiers();
+  host_port_initialize();  // as the image's main program
+  line_input_initialize();
   start(START_SAVED);
   output();
   fake_hal_set_look(0);
