@@ -1,7 +1,8 @@
 """Delays between pads and flip-flops in a placed design, from the SDF file that nextpnr writes; docs/fpga.md.
 
 nextpnr judges what runs from clock to clock. Here is the rest: pad to flip-flop, flip-flop to pad, pad to pad without a
-clock, flip-flop to the resets of others; and what that means for the rows of the data sheet of Port A and ISA.
+clock, /RD to the end of D, flip-flop to the resets of others; and what that means for the rows of the data sheet of
+Port A and ISA.
 """
 
 import collections
@@ -15,6 +16,10 @@ CPU = 9.8304  # MHz, times I52 + 1
 # Characteristics" in Lattice's ECP5 family data sheet, FPGA-DS-02012. A pad into a register beside it sets up in
 # tSUPLL; tCOPLL is clock, register and pad, so the register counts twice here.
 PAD_IN, PAD_OUT, SKEW = 0.70, 3.50, 0.42  # tSUPLL, tCOPLL, tSKEW_PRI
+# The RAM has its word a clock before /TA falls; the CPU samples D 0.25 TC - 3 ns behind /TA (rows 105 and 118 of
+# host-bus:2.2), which is before it at the fastest clock that pads are allowed for, I52 = 15.
+BEHIND_TA = TICK + 0.25 * 1000 / (CPU * 16) - 3.0
+RAM, STROBES = "u_dpram.", "u_bus_strobes."  # cells
 # Which pads must keep a time, and the rows of host-bus they are for: to a flip-flop, or from one.
 PORT_A_IN, ISA_IN = r"pa_.*_n?io?", r"isa_(?!sd_io|resetdrv).*_n?i"
 D, TA, MEMCS16, CLOCKS = r"pa_d(ata)?_io", r"pa_ta_n_?o", r"isa_memcs16_n_?io", r"(phase|servo)_io"
@@ -100,20 +105,35 @@ def bus(name):
 
 
 def delays(graph):
-    """{pad, a bus as one: {"in": pad to flip-flop, "out": flip-flop to pad, "through": pad to pad}}, and the reset."""
+    """Of each pad, a bus as one, {kind: the longest way}, and that of the reset. Kinds: "in" to a flip-flop, "through"
+    from another pad, "out" from a flip-flop to the level, "enable" to what turns the pad on, "ram" from the dual-ported
+    RAM to either, "off" from /RD to the enable by way of a flip-flop that /RD clears. What a strobe clocks follows no
+    clock and counts nowhere.
+    """
     nodes = set(graph.after) | set(graph.before)
     flip_flops = {node: delay for node, delay in graph.setup.items() if node[1] != "LSR"}
-    to_pads = {node: 0.0 for node in nodes if pad(node[0]) and node[1] in ("I", "T")}
+    clears = [node for node in graph.setup if node[1] == "LSR"]
     pads_in = {node: 0.0 for node in nodes if pad(node[0]) and node[1] == "O"}
-    inwards, outwards = longest(graph.after, flip_flops), longest(graph.before, graph.launch)
-    from_pads, resets = longest(graph.before, pads_in), longest(graph.before, graph.launch)
+    launch = {node: delay for node, delay in graph.launch.items() if STROBES not in node[0]}
+    ram = {node: delay for node, delay in launch.items() if RAM in node[0]}
+    others = {node: delay for node, delay in launch.items() if RAM not in node[0]}
+    read = longest(graph.before, {node: 0.0 for node in pads_in if pad(node[0]) == "pa_rd_ni"})
+    cleared = {(cell, "Q"): read((cell, port)) + launch.get((cell, "Q"), 0.0)
+               for cell, port in clears if read((cell, port)) is not None}
+    inwards, resets = longest(graph.after, flip_flops), longest(graph.before, graph.launch)
+    to_level = {"out": longest(graph.before, others), "ram": longest(graph.before, ram),
+                "through": longest(graph.before, pads_in)}
+    to_enable = {"enable": to_level["out"], "ram": to_level["ram"], "through": to_level["through"],
+                 "off": longest(graph.before, cleared)}
     found = collections.defaultdict(dict)
-    for node in sorted(pads_in):
-        keep(found[bus(pad(node[0]))], "in", inwards(node))
-    for node in sorted(to_pads):
-        keep(found[bus(pad(node[0]))], "out", outwards(node))
-        keep(found[bus(pad(node[0]))], "through", from_pads(node))
-    reset = [resets(node) + delay for node, delay in graph.setup.items() if node[1] == "LSR" and resets(node)]
+    for node in sorted(nodes):
+        if not pad(node[0]):
+            continue
+        row = found[bus(pad(node[0]))]
+        ways = {"O": {"in": inwards}, "I": to_level, "T": to_enable}.get(node[1], {})
+        for kind, way in ways.items():
+            keep(row, kind, way(node))
+    reset = [resets(node) + graph.setup[node] for node in clears if resets(node)]
     return dict(found), max(reset, default=None)
 
 
@@ -122,8 +142,8 @@ def keep(row, kind, delay):
         row[kind] = max(row.get(kind, 0.0), delay)
 
 
-def worst(found, pattern, kind):
-    ways = [ways[kind] for name, ways in found.items() if re.fullmatch(pattern, name) and kind in ways]
+def worst(found, pattern, *kinds):
+    ways = [ways[kind] for name, ways in found.items() if re.fullmatch(pattern, name) for kind in kinds if kind in ways]
     return max(ways, default=0.0)
 
 
@@ -131,13 +151,19 @@ def rows(found):
     """The rows of the data sheet that pads decide, the one with the least to spare first."""
     a_in = worst(found, PORT_A_IN, "in") + PAD_IN + SKEW
     isa_in = worst(found, ISA_IN, "in") + PAD_IN + SKEW
-    out = {name: worst(found, name, "out") + PAD_OUT + SKEW
-           for name in (D, TA, "isa_sd_io", "isa_iochrdy_io", MEMCS16, CLOCKS)}
+    out = {name: worst(found, name, "out", "enable") + PAD_OUT + SKEW
+           for name in (D, "isa_sd_io", "isa_iochrdy_io", MEMCS16)}
     table = [(PORT_A_IN, Row("host-bus:2.6", "pads of Port A to a flip-flop", a_in, TICK)),
-             (D, Row("host-bus:2.6", "clock to D", out[D], 10.0)),
-             (TA, Row("host-bus:2.6", "clock to /TA", out[TA], 10.0)),
+             (D, Row("host-bus:2.6", "clock to D, of registers", out[D], 10.0)),
+             (D, Row("host-bus:2.6/5", "/RD to the end of D, without a clock",
+                     worst(found, D, "off") + PAD_IN + PAD_OUT, TICK)),
+             (TA, Row("host-bus:2.6", "clock to /TA", worst(found, TA, "out", "ram") + PAD_OUT + SKEW, 10.0)),
+             (TA, Row("host-bus:6.9/8", "D of the RAM behind /TA, which comes a clock later",
+                      worst(found, D, "ram") - worst(found, TA, "out", "ram"), BEHIND_TA)),
              (CLOCKS, Row("servo-ic:5.1/11", "PHASE, SERVO from chip to chip, without the wire",
-                          out[CLOCKS] + worst(found, CLOCKS, "in") + PAD_IN, TICK)),
+                          worst(found, CLOCKS, "out") + PAD_OUT + SKEW + worst(found, CLOCKS, "in") + PAD_IN, TICK)),
+             (CLOCKS, Row("servo-ic:5.1/8", "clock to the enable of PHASE, SERVO, which are high then",
+                          worst(found, CLOCKS, "enable") + PAD_OUT + SKEW, 3 * TICK)),
              (ISA_IN, Row("host-bus:3.4, t8", "command to IOCHRDY low, 5 ticks between", 5 * TICK + isa_in +
                           out["isa_iochrdy_io"], 70.0)),
              (ISA_IN, Row("host-bus:3.4, t4", "IOR# to data, 8 ticks between", 8 * TICK + isa_in + out["isa_sd_io"],
@@ -153,7 +179,7 @@ def rows(found):
 def wait_states(found, i52):
     """The least for gate ICs at a CPU clock, by row 105, (WS + 0.25) TC - 5 ns; None: 31 are too few."""
     need = 9 * TICK + 1.0 + worst(found, PORT_A_IN, "in") + PAD_IN + SKEW + \
-        worst(found, D, "out") + PAD_OUT + SKEW
+        worst(found, D, "out", "enable") + PAD_OUT + SKEW
     clock = 1000 / (CPU * (i52 + 1))
     least = max(1, math.ceil((need + 5.0) / clock - 0.25))
     return least if least <= 31 else None
@@ -169,8 +195,10 @@ def page(found, reset):
     yield from ("", f"Least wait states of gate ICs on this chip, by I52: {told}.", "",
                 "| pads | pad to flip-flop ns | flip-flop to pad ns | pad to pad ns |", "|---|---|---|---|")
     shown = ((name, ways) for name, ways in found.items() if re.match(SHOWN, name))
+    columns = (("in",), ("out", "ram", "enable"), ("through",))
     for name, ways in sorted(shown, key=lambda item: -max(item[1].values(), default=0.0)):
-        cells = (f"{ways[kind]:.2f}" if kind in ways else "" for kind in ("in", "out", "through"))
+        longest_ways = (max((ways[kind] for kind in kinds if kind in ways), default=None) for kinds in columns)
+        cells = ("" if way is None else f"{way:.2f}" for way in longest_ways)
         yield f"| `{name}` | {' | '.join(cells)} |"
     if reset is not None:
         missed = "" if reset <= TICK else " **missed**"

@@ -74,6 +74,27 @@ SDF = r"""
 )
 """
 
+# D: its level from the RAM, its enable from a flip-flop that /RD clears, and from one that a strobe clocks.
+DRIVEN = r"""
+(CELL (CELLTYPE "top")
+  (INTERCONNECT u_core.u_dpram.mem/DOB0 u_pa_data.gen_pad\[0\].u_pad/I (1:2:500) (1:2:500))
+  (INTERCONNECT pa_rd_ni\$tr_io/O oe/LSR (1:2:1000) (1:2:1000))
+  (INTERCONNECT oe/Q u_pa_data.gen_pad\[0\].u_pad/T (1:2:2000) (1:2:2000))
+  (INTERCONNECT u_core.u_bus_strobes.rd/Q u_pa_data.gen_pad\[1\].u_pad/T (1:2:5000) (1:2:5000))
+)
+(CELL
+  (CELLTYPE "DP16KD")
+  (INSTANCE u_core.u_dpram.mem)
+  (IOPATH CLKB DOB0 (1:2:4260) (1:2:4260))
+)
+""" + "".join(f"""
+(CELL
+  (CELLTYPE "TRELLIS_FF")
+  (INSTANCE {cell})
+  (IOPATH CLK Q (1:2:400) (1:2:400))
+  (SETUPHOLD (posedge LSR) (posedge CLK) (1:2:287) (0:0:0))
+)""" for cell in ("oe", "u_core.u_bus_strobes.rd"))
+
 
 class Pads(unittest.TestCase):
     def setUp(self):
@@ -87,13 +108,38 @@ class Pads(unittest.TestCase):
 
     def test_a_chip_has_rows_of_its_pads_alone(self):
         found = {"phase_io": {"in": 2.0, "out": 3.0}, "pa_x_i": {"in": 1.0}}
-        self.assertEqual([row.rule for row in fpga_pads.rows(found)], ["servo-ic:5.1/11", "host-bus:2.6"])
+        self.assertEqual([row.rule for row in fpga_pads.rows(found)],
+                         ["servo-ic:5.1/11", "host-bus:2.6", "servo-ic:5.1/8"])
 
     def test_ways_are_the_longest(self):
         self.assertAlmostEqual(self.found["pa_d_io"]["in"], 1.0 + 0.24 + 2.0 + 0.05)
         self.assertAlmostEqual(self.found["pa_ta_no"]["out"], 0.4 + 3.0)
         self.assertAlmostEqual(self.found["pa_ta_no"]["through"], 0.7)
         self.assertAlmostEqual(self.reset, 0.4 + 4.0 + 0.287)
+
+    def test_what_turns_a_pad_on_and_what_leaves_the_ram_are_told_apart_from_what_a_strobe_clocks(self):
+        found, _ = fpga_pads.delays(fpga_pads.read(DRIVEN.splitlines()))
+        ways = found["pa_data_io"]
+        self.assertAlmostEqual(ways["enable"], 0.4 + 2.0)
+        self.assertAlmostEqual(ways["ram"], 4.26 + 0.5)
+        self.assertNotIn("out", ways)
+
+    def test_the_end_of_a_read_goes_by_what_it_clears(self):
+        found, _ = fpga_pads.delays(fpga_pads.read(DRIVEN.splitlines()))
+        self.assertAlmostEqual(found["pa_data_io"]["off"], 1.0 + 0.4 + 2.0)
+        row = next(row for row in fpga_pads.rows(found) if row.rule == "host-bus:2.6/5")
+        self.assertAlmostEqual(row.has, 3.4 + 0.7 + 3.5)
+
+    def test_the_ram_may_be_a_tick_less_1_41_ns_behind_its_ta(self):
+        found = {"pa_data_io": {"ram": 10.0}, "pa_ta_n_o": {"ram": 3.0, "out": 1.0}}
+        row = next(row for row in fpga_pads.rows(found) if row.rule == "host-bus:6.9/8")
+        self.assertAlmostEqual(row.has, 7.0)
+        self.assertAlmostEqual(row.limit, 7.067, 3)  # 8.477 + 6.358 / 4 - 3
+
+    def test_the_enable_of_a_net_has_a_clk_ref_and_its_level_a_tick(self):
+        found = {"servo_io": {"in": 1.0, "out": 2.0, "enable": 9.0}}
+        self.assertEqual([(row.rule, f"{row.has:.2f}", f"{row.limit:.2f}") for row in fpga_pads.rows(found)],
+                         [("servo-ic:5.1/11", "7.62", "8.48"), ("servo-ic:5.1/8", "12.92", "25.43")])
 
     def test_a_pad_that_is_late_is_the_first_row_and_missed(self):
         found = {"pa_ta_no": {"out": 6.2}, "pa_a_i": {"in": 2.0}}
