@@ -31,4 +31,5 @@ brick_add_check(docs.coverage tools/coverage.py --check)  # a row for every modu
 brick_add_check(docs.mutation tools/mutate report --check)  # made of the results, no reason of a dead mutant
 brick_add_check(docs.citations tools/check_citations.py)  # of the data sheet: each leads to a section, a rule
 brick_add_check(trace.requirements tools/traceability.py)
+brick_add_check(formal.joints tools/joints.py)  # each assumption of a proof names its guarantee
 brick_add_check(docs.signoff tools/signoff.py)  # what stands behind each requirement; covers of the plan were counted
