@@ -8,6 +8,7 @@ endfunction()
 brick_add_check(lint.verilator tools/lint_rtl.py verilator)  # -Wall over every module as a top, waivers in rtl/lint.vlt
 brick_add_check(lint.yosys tools/lint_rtl.py yosys)          # reads, elaborates and checks board_top
 brick_add_check(lint.icarus tools/lint_rtl.py icarus)        # parses and elaborates board_top
+brick_add_check(lint.unknowns tools/check_unknowns.py)       # four states in Icarus: no x from the end of a reset on
 brick_add_check(lint.lists tools/rtl_cores.py --check)           # file lists and cores are the tree's, pages say so
 brick_add_check(lint.lists_alone tools/rtl_cores.py --elaborate)  # each list is all that its block needs, and no more
 if(NOT BRICK_COVERAGE)  # coverage counters belong to an instance: nothing is shared then
@@ -30,3 +31,5 @@ brick_add_check(docs.coverage tools/coverage.py --check)  # a row for every modu
 brick_add_check(docs.mutation tools/mutate report --check)  # made of the results, no reason of a dead mutant
 brick_add_check(docs.citations tools/check_citations.py)  # of the data sheet: each leads to a section, a rule
 brick_add_check(trace.requirements tools/traceability.py)
+brick_add_check(formal.joints tools/joints.py)  # each assumption of a proof names its guarantee
+brick_add_check(docs.signoff tools/signoff.py)  # what stands behind each requirement; covers of the plan were counted

@@ -12,7 +12,8 @@ of the test suite showed of each of these tests, on each engine.
 
   (no option)  fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, on a traced ID without design
                files for each of its engines, on a test that docs/verification-plan.md names and that does not exist,
-               and when docs/traceability.md is not what --write would write. In each run of the suite
+               on a row of it without covers and reason, and when docs/traceability.md is not what --write would write.
+               In each run of the suite
   --check      the same, and fails on the committed results as --results does. No run asks for that: its own results
                come behind it
   --write      writes docs/traceability.md
@@ -31,6 +32,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree
 
+import verification_plan
 from common import ROOT, files, finish
 
 PAGE = "docs/traceability.md"
@@ -351,6 +353,7 @@ def main():
         problems += result_problems(requirements, claimed, tests, taken["tests"])
     else:
         problems += problems_in(requirements, claimed, tests, design) + plan_problems(root)
+        problems += verification_plan.problems_of(root)
     if options.check and not problems:  # a claim of no requirement has no engines
         problems += result_problems(requirements, claimed, tests, read_results(root)["tests"])
     text = page(requirements, claimed, tests, design, read_results(root))

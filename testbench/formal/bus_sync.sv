@@ -83,12 +83,17 @@ module bus_sync_rules (
     awake_q <= awake_q + {3'd0, awake_q != 4'd15};
   end
   always_comb begin
+    // guarantee: power-on
     assume (rst_ni == started_q);
     assume (awake_q == 4'd15 || (rd_ni && wr_ni));
+    // guarantee: host-bus:2.5/6, `bus: a, *`
     assume (rd_ni || wr_ni);
     if (low) begin
+      // guarantee: host-bus:2.2/113, `bus: 113, *`; host-bus:2.2/114, `bus: 114, *`
       assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
+      // guarantee: host-bus:2.5/7, `bus: b, *`; host-bus:2.6/6, `bus: w1, *`
       assume (ours_i == ours_q && addr_i == addr_q && wdata_i == wdata_q);
+      // guarantee: host-bus:2.6/8, `bus: s1, *`
       assume (!rise || !ours_q || age_q >= 5'd21);
     end
   end

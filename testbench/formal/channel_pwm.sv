@@ -109,7 +109,9 @@ module channel_pwm_rules (
 
   always @(posedge clk_i) begin
     started_q <= 1'b1;
+    // guarantee: power-on
     assume (started_q || !rst_ni);
+    // guarantee: choice
     assume (k != 2'd3);
     if (rst_ni) begin
       // R1: Top and bottom switch of a phase are never on together.

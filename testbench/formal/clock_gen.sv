@@ -164,6 +164,7 @@ module clock_gen_rules (
   logic started_q = 1'b0;
   always @(posedge clk_i) begin
     started_q <= 1'b1;
+    // guarantee: power-on
     assume (started_q || !rst_ni);
     if (rst_ni) begin
       // R1: The triangle stays between -(I7m00 + 2) and I7m00 + 1 of its time.

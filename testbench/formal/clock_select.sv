@@ -42,6 +42,7 @@ module clock_select_rules (
     started_q <= 1'b1;
   end
   assign edge_ref = step_q == 3'd0;  // at the end of this step
+  // guarantee: power-on
   always_comb assume (rst_ni == started_q);
 
   logic       phase, servo, conflict;

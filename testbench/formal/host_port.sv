@@ -143,11 +143,17 @@ module host_port_rules (
   end
   always @(posedge clk_i) begin
     started_q <= 1'b1;
+    // guarantee: power-on
     assume (started_q || !rst_ni);
+    // guarantee: isa_slave R4; bus_sync R3, R4
     assume (!(wr_i && rd_done_i) && !(cpu_we_i && cpu_rd_i));
+    // guarantee: host-bus:3.9/3, `bus: room-in-tx, *`
     assume (!(host_wr && data) || may_send_q);
+    // guarantee: isa_slave R4
     assume (!rd_i || !(wr_i || rd_done_i));
+    // guarantee: isa_slave R7
     assume (!fetch || read_q);
+    // guarantee: host-bus:3.2/12, `breq-rotary: by interrupts, *, lines`
     assume (!cpu_send || cpu_may_send_q);
     assume (!cpu_fetch || cpu_may_fetch_q);
   end

@@ -75,6 +75,7 @@ module interrupt_controller_rules (
 
   always @(posedge clk_i) begin
     started_q <= 1'b1;
+    // guarantee: power-on
     assume (started_q || !rst_ni);
     if (started_q && rst_ni && $past(rst_ni)) begin
       // R1: SIG is the line two clocks ago, whatever mask, mode and writes.

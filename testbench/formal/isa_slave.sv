@@ -1,8 +1,8 @@
 // Rules of the ISA slave towards the bus and towards what stands behind it, host-bus:3.4, host-bus:3.8, host-bus:3.9. A
 // step is half a period of clk_pwm, 4.2 ns; a pin may change at any, and an edge takes what stood a step before it. R1
-// to R5 hold for any pins. R6 is about hosts that have been sound so far: one command at a time, high for 24 steps
-// between two (host-bus:3.4, row 11: 170 ns) and low for 8 or more, write data standing from 5 steps after the fall
-// (row 6) to the rise, no RESETDRV. Switches stand. Of the data two bits are followed, one of each lane.
+// to R5 and R7 hold for any pins. R6 is about hosts that have been sound so far: one command at a time, high for 24
+// steps between two (host-bus:3.4, row 11: 170 ns) and low for 8 or more, write data standing from 5 steps after the
+// fall (row 6) to the rise, no RESETDRV. Switches stand. Of the data two bits are followed, one of each lane.
 // proof: pdr
 // clocks: several
 // steps: 90
@@ -18,6 +18,9 @@
 // fault R5: AEN does not turn I/O off (rtl/host/isa_slave.sv)
 //   - assign io_hit  = ~aen_q &
 //   + assign io_hit  =
+// fault R7: the byte of a read of +4 to +7 is not taken (rtl/host/isa_slave.sv)
+//   - assign hp_rd_o      = target_q[Port] & (cycle_q == Start) & kind_q[Ior];
+//   + assign hp_rd_o      = target_q[Port] & (cycle_q == Start) & kind_q[Ior] & ~io_addr_q[2];
 `default_nettype none
 
 module isa_slave_rules (
@@ -91,6 +94,7 @@ module isa_slave_rules (
     if (two || resetdrv_i || (fall && high_q < 5'd24) || (cmd_q != 4'd0 && (idle ? low_q < 5'd8 : cmd != cmd_q)) ||
         (low_q >= 5'd5 && sd_i != sd_q)) sound_q <= 1'b0;
   end
+  // guarantee: power-on
   always_comb assume (rst_ni == started_q);
 
   // After two commands at once for three edges of clk_pwm and one of clk_ref, until all are high. Of the command that
@@ -119,6 +123,12 @@ module isa_slave_rules (
   logic io_ours;
   assign io_ours = !at2_q[17] && at2_q[9:4] == io_base[5:0] && (!io_decode16 || at2_q[15:10] == {4'h0, io_base[7:6]}) &&
                    (begun_q == 4'd1 || begun_q == 4'd2);
+
+  // The byte of a read of the port was taken, and neither a write nor a reset has come since.
+  logic taken_q = 1'b0;
+  always @($global_clock) begin
+    if (edge_ref) taken_q <= (taken_q | (hp_sel & hp_rd)) & ~hp_rd_done & ~hp_wr & ~host_reset;
+  end
 
   // What a clk_ref ago was asked of the RAM.
   logic        mem_sel_q = 1'b0, mem_rd_q = 1'b0;
@@ -170,6 +180,12 @@ module isa_slave_rules (
                   (!pic_wr || upper || pic_wdata[0] == data_q) &&
                   (!mem_wr || mem_be == 2'b10 || mem_wdata[b] == data_q));
       C6: cover (mem_wr && data_q);
+    end
+
+    // R7: The end of a read of the port comes after the edge that took its byte, with no write and no reset between.
+    if (edge_ref && hp_rd_done) begin
+      R7: assert (taken_q);
+      C7: cover (hp_addr == 3'd7);
     end
   end
 

@@ -83,7 +83,9 @@ module pic_8259_rules (
 
   always @(posedge clk_i) begin
     started_q <= 1'b1;
+    // guarantee: power-on
     assume (started_q || !rst_ni);
+    // guarantee: isa_slave R4
     assume (!rd_i || !wr_i);
     if (started_q && rst_ni && $past(rst_ni)) begin
       // R1: INT is asked for only by a level that asks and is not masked, and such a one is acknowledged.

@@ -102,6 +102,7 @@ module servo_ic_rules (
 
   // It comes after the first edge, so that an edge has not seen it before.
   logic started_q = 1'b0, trip_q = 1'b0;
+  // guarantee: power-on; watchdog R1
   always_comb assume (started_q ? trip_i || !trip_q : !trip_i);
 
   // What stood at the trip, and the edges of clk_ref since: none, one, more.

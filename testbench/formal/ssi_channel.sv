@@ -67,10 +67,14 @@ module ssi_channel_rules (
     else if (rise_i)  low_q <= 1'b0;
   end
   always_comb begin
+    // guarantee: ssi_group R1
     assume (!start_i || (rst_nq && !run_q));
+    // guarantee: ssi_group R2
     assume (!refuse_i || run_q);
+    // guarantee: ssi_group R3, R4
     assume (!fall_i || (!low_q && !end_i && (run_q || start_i)));
     assume (!rise_i || low_q);
+    // guarantee: ssi_group R6, R7
     assume (!end_i || (run_q && !low_q && !active));
   end
 

@@ -54,6 +54,7 @@ module ssi_group_rules (
 
   logic start, refuse, fall, rise, moves;
   logic active_q = 1'b0;
+  // guarantee: ssi_channel R2, a clock before: active_o
   always @(posedge clk_i) active_q <= rst_nq & (start | (active_q & ~(rise & stop_i)));
   ssi_group dut (.clk_pwm_i(clk_i), .rst_ni(rst_nq), .geo_i(geo), .divisor_i, .power_i, .servo_i, .falling_i, .delay_i,
                  .code_i, .phase_rise_i, .phase_fall_i, .servo_rise_i, .servo_fall_i, .enabled_i, .active_i(active_q),

@@ -66,6 +66,7 @@ module watchdog_rules (
 
   always @(posedge clk_i) begin
     started_q <= 1'b1;
+    // guarantee: power-on
     assume (started_q || !rst_ni);
     if (rst_ni) begin
       // R1: A trip stays until a reset.

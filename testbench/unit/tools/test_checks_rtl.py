@@ -138,5 +138,36 @@ class ClockCrossings(Tree):
         self.expect(done, 1, "ext_phase_i reaches u_clock_select.u_phase_sync.sync1_q (data)")
 
 
+@unittest.skipUnless(shutil.which("iverilog"), "iverilog is not installed")
+class Unknowns(Tree):
+    """In a copy of the RTL, a few hundred clocks each."""
+
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(TOOLS.parent / "rtl", self.root / "rtl")
+
+    def judge(self, top, path, old, new, clocks="600"):
+        file = self.root / "rtl" / path
+        text = file.read_text()
+        self.assertEqual(text.count(old), 1, old)
+        file.write_text(text.replace(old, new))
+        return self.run_tool("check_unknowns.py", top, "--clocks", clocks)
+
+    def test_a_register_without_reset_fails(self):
+        done = self.judge("servo_ic", "servo_ic/channel_regs.sv",
+                          "      out_a_q   <= brick_regs_pkg::ServoChannelOutAReset;\n", "")
+        self.expect(done, 1, "servo_ic: u_channels.gen_channel[0].u_channel.u_regs.out_a_o is unknown at 101,")
+
+    def test_a_level_that_becomes_unknown_later_fails(self):
+        """With the first count: nothing shows at the end of the reset."""
+        done = self.judge("servo_ic", "servo_ic/channel_counter.sv", "counter_q - 24'd1", "counter_q - 24'bx")
+        self.assertRegex(done.stdout, r"counter_o is unknown at (?!101,)\d+, seed 1")
+
+    def test_a_latch_of_the_board_without_reset_fails(self):
+        done = self.judge("board_top", "host/host_signals.sv",
+                          "if (!rst_ni)   latch_q <= brick_regs_pkg::BoardLatchesHostSignalsReset[3:0];\n    else ", "")
+        self.expect(done, 1, "board_top: u_core.u_host_signals.rdata_o is unknown at 101, seed 1")
+
+
 if __name__ == "__main__":
     run()
