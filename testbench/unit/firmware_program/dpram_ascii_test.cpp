@@ -2,6 +2,7 @@
 #include <random>
 
 #include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/dpram_host.h"
 #include "testbench/unit/random_seed.h"
 
@@ -382,6 +383,7 @@ TEST_F(DpramAscii, AnUltraliteAndAUmacRaiseCtrl0AndLeaveCtrl1) {
     EXPECT_EQ(host("M1"), "3") << product;
     EXPECT_EQ(released(), (Lines{"000D 0", "0006 "}));
     EXPECT_EQ(host("M1"), "2") << product;
+    EXPECT_FALSE(fake_hal_masked()) << product;
     EXPECT_TRUE(compare_output_edges().empty()) << product;
   }
 }
