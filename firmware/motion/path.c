@@ -75,6 +75,7 @@ void path_blend(struct path* p, uint32_t ahead, int64_t now) {
 }
 
 static int64_t part_of(const struct path_move* m, int64_t progress) {
+  if (progress <= 0) return 0; /* of most: no division */
   return progress >= m->time ? PATH_WHOLE : fixed_part_of(&m->by_time, progress);
 }
 

@@ -189,6 +189,19 @@ TEST_F(AxisMatrix, AbsoluteCentresAreDisplaced) {
   stands_at(end.first, end.second, -3);
 }
 
+// motion:7.2/2: what ABS(R) does not give of a centre is as at the start, as the program sees that.
+TEST_F(AxisMatrix, ACentreThatIsNotGivenIsThatOfTheStart) {
+  ASSERT_EQ(host("I5113=2"), "");
+  store(with({"TSEL1 AROT40 TM20", "X0 Y4 Z0", "DWELL10", "ABS(R) TM300 TA20 CIRCLE1 X20 Y4 I10", "INC(R)"}));
+  const double x = c30 * 10 - s30 * 4, y = s30 * 10 + c30 * 4;
+  double worst = 0;
+  run([&](double t) {
+    if (t > 60) worst = std::max(worst, std::abs(std::hypot(at(1) / 1000 - x, at(2) / 1000 - y) - 10));
+  });
+  EXPECT_LT(worst, 0.01);
+  stands_at(c30 * 20 - s30 * 4, s30 * 20 + c30 * 4, 0);
+}
+
 // Z of the program lies along -Y of base: arcs of its XY-plane are in the XZ-plane.
 TEST_F(AxisMatrix, PlanesTiltWithIt) {
   ASSERT_EQ(host("I5113=2"), "");
@@ -223,8 +236,17 @@ TEST_F(AxisMatrix, PsetIsOfTheProgram) {
 }
 
 TEST_F(AxisMatrix, WhatCannotBeIsARunTimeError) {
-  const Lines programs[] = {{"TSEL5 X1"},  {"TSEL(-1) X1"},      {"AROT40 X1"},           {"TINIT X1"},
-                            {"ADIS70 X1"}, {"TSEL1 AROT100 X1"}, {"TSEL1 AROT(8192) X1"}, {"TSEL1 AROT(-1) X1"}};
+  const Lines programs[] = {{"TSEL5 X1"},
+                            {"TSEL(-1) X1"},
+                            {"AROT40 X1"},
+                            {"TINIT X1"},
+                            {"ADIS70 X1"},
+                            {"TSEL1 AROT100 X1"},
+                            {"TSEL1 AROT(8192) X1"},
+                            {"TSEL1 AROT(-1) X1"},
+                            {"TSEL1 ADIS(8192) X1"},
+                            {"TSEL1 IDIS(8192) X1"},
+                            {"TSEL1 IDIS(-1) X1"}};
   for (const Lines& lines : programs) {
     SCOPED_TRACE(lines.front());
     store(lines);

@@ -146,6 +146,42 @@ TEST_F(Commutation, MicroStepsTurnByTheOutputAndNotByTheEncoder) {
   EXPECT_EQ(x_word(kPosition), -20400);
 }
 
+// motion:3.2/1: from -Ixx71/2 on, which it is still, to Ixx71/2 - 1; steps of 4,096 and of 4,095 units.
+TEST_F(Commutation, ThePositionGoesRoundAtHalfOfTheCycle) {
+  set("I196=1 I170=4 I171=65536 I177=8000 I172=512");
+  enable();
+  const struct {
+    double output;
+    int updates;
+    std::int32_t position;
+  } cases[] = {{-1024, 8, -32768},     {-1024, 9, 65536 - 9 * 4096},
+               {1024, 8, -32768},      {-1023.75, 9, 65536 - 9 * 4095},
+               {1023.75, 8, 8 * 4095}, {1023.75, 9, 9 * 4095 - 65536}};
+  for (const auto& c : cases) {
+    stand_at(0);
+    command(c.output);
+    phase(c.updates);
+    EXPECT_EQ(x_word(kPosition), c.position) << c.output << " " << c.updates;
+  }
+}
+
+// A motor that is commutated again turns with its encoder alone, whether it made whole units or parts of them.
+TEST_F(Commutation, MicroStepsEndWithTheirMode) {
+  for (const double output : {0.25, 0.3}) {
+    set("I196=1 I170=4 I171=65536 I177=8000 I178=0 I172=512");
+    enable();
+    stand_at(0);
+    command(output);
+    phase(40);
+    ASSERT_GE(x_word(kPosition), 40);
+    set("I196=0");
+    command(output);
+    const std::int32_t stood = x_word(kPosition);
+    phase(100);
+    EXPECT_EQ(x_word(kPosition), stood) << output;
+  }
+}
+
 TEST_F(Commutation, PartsOfMicroStepsAddUp) {
   set("I196=1 I170=1 I171=65536 I177=8000 I172=512");
   enable();

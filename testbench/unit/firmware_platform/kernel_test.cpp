@@ -99,6 +99,24 @@ TEST_F(ClockWatch, AChangeIsWatchedForFifteenPeriods) {
   EXPECT_FALSE(clock_watch_close());
 }
 
+// Without clocks the servo task runs each four phase periods, to the cycle.
+TEST_F(ClockWatch, TheServoTaskRunsByTheCounterOfCycles) {
+  fake_hal_stop_clocks(true);
+  fake_hal_set_look(0);
+  fake_hal_pass(11 * kPhase);
+  clock_watch_poll();
+  ASSERT_TRUE(clock_watch_close());
+  for (std::uint32_t ran = tasks_servo_count(), n = 1; n <= 5; ++n) {
+    fake_hal_pass(4 * kPhase - 1);
+    clock_watch_poll();
+    EXPECT_EQ(tasks_servo_count() - ran, n - 1);
+    fake_hal_pass(1);
+    clock_watch_poll();
+    EXPECT_EQ(tasks_servo_count() - ran, n);
+  }
+  fake_hal_stop_clocks(false);
+}
+
 class TaskTimes : public ::testing::Test {
  protected:
   void SetUp() override { fake_hal_set_look(0); }

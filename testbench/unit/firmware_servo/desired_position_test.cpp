@@ -444,6 +444,21 @@ TEST_F(DesiredPosition, ACountedPositionMovesNothing) {
   EXPECT_EQ(position_loop_step(0), 0);
 }
 
+// motion:1.3: D:$8D of motor 1, + $80 a motor, is what it has followed.
+TEST_F(DesiredPosition, TheMasterPositionIsShownAtItsMotor) {
+  c_.line("I105=$10F5 I107=96 I106=1 I205=$10F5 I207=-48 I206=1");
+  close();
+  master(-300);
+  desired(0);
+  desired(0, 1);
+  const std::int64_t ways[] = {-300 * kCount, 150 * kCount};
+  for (std::uint32_t motor = 0; motor < 2; ++motor) {
+    const std::uint32_t word = 0x8D + 0x80 * motor;
+    EXPECT_EQ(*hal_x(word), static_cast<std::uint32_t>(ways[motor] >> 24) & HAL_WORD_MASK) << motor;
+    EXPECT_EQ(*hal_y(word), static_cast<std::uint32_t>(ways[motor]) & HAL_WORD_MASK) << motor;
+  }
+}
+
 // motion:1.2/3, to the unit: one more of its master's ways, Ixx07 = 1, leads out of a limit, none into it.
 TEST_F(DesiredPosition, AMotorInALimitFollowsNoUnitFurther) {
   c_.line("I105=$10F5 I107=1 I106=1");
