@@ -66,8 +66,8 @@ class Root:
         self.run("apt-get", "install", "-y", "-q", "--no-install-recommends", *packages)
 
 
-def problems_in(root, build, made, packages):
-    expected = wheel.run(build / "bin/brick", "--version")
+def problems_in(root, expected, made, packages):
+    """`expected`: what the command says of its version."""
     for file in [made, *packages]:
         shutil.copy(file, root.place / "tmp")
     root.run("apt-get", "update", "-q")
@@ -100,9 +100,10 @@ def main():
     build, folder = options.build.resolve(), options.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     made, packages = make(build, folder)
+    version = wheel.run(build / "bin/brick", "--version")  # before somebody builds again
     problems = [*wheel.lacks(made), *lintian(packages)]
     if options.root and not problems:
-        problems += problems_in(Root(folder / "root"), build, made, packages)
+        problems += problems_in(Root(folder / "root"), version, made, packages)
     finish("packages", problems)
 
 

@@ -11,6 +11,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "clients"))
 import turbo_pmac
+from rows import row
 
 AXES = "".join(f"#{motor}?PVF" for motor in range(1, 9))
 ROUNDS, SECONDS = 2000, 10
@@ -19,10 +20,6 @@ ROUNDS, SECONDS = 2000, 10
 def processor_time(process):
     fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / 100
-
-
-def row(what, measured, goal="", met=True):
-    print(f"{what:<58} {measured:>22}   {goal}{'' if met else '  NOT MET'}")
 
 
 def round_trips(client, line):

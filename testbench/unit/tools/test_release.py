@@ -1,0 +1,61 @@
+"""What tools/release.py refuses, and what it calls different."""
+
+import gzip
+import io
+import json
+import pathlib
+import sys
+import tarfile
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tools"))
+import release  # noqa: E402
+
+GOOD = {"title": "release", "verdict": "passed", "build": {"commit": "c0ffee", "dirty": False}}
+
+
+class Release(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def problems(self, **changes):
+        (self.folder / "report.json").write_text(json.dumps({**GOOD, **changes}))
+        return [problem.split(": ", 1)[1] for problem in release.report_problems(self.folder, "c0ffee")]
+
+    def test_a_report_of_the_plan_that_passed_at_this_commit_is_taken(self):
+        self.assertEqual(self.problems(), [])
+
+    def test_any_other_is_refused(self):
+        self.assertEqual(self.problems(title="ci"), ["title is ci, expected release"])
+        self.assertEqual(self.problems(verdict="failed"), ["verdict is failed, expected passed"])
+        self.assertEqual(self.problems(build={"commit": "f00", "dirty": True}),
+                         ["commit is f00, expected c0ffee", "dirty is True, expected False"])
+        (self.folder / "report.json").unlink()
+        self.assertEqual(len([*release.report_problems(self.folder, "c0ffee")]), 1)
+
+    def test_files_that_differ_are_named_reports_are_not(self):
+        for name, content in (("one", "a"), ("other", "b")):
+            place = self.folder / name
+            place.mkdir()
+            (place / "brick-1.tar.gz").write_text("same")
+            (place / "brick-1-regress.json").write_text(content)
+            (place / "brick.deb").write_text(content)
+            (place / release.SUMS).write_text(release.checksums(place))
+        found = release.differences(self.folder / "one", self.folder / "other")
+        self.assertEqual([problem.split(":")[0] for problem in found], ["brick.deb"])
+
+    @unittest.skipUnless((ROOT / ".git").exists(), "a tree without git")
+    def test_the_archive_of_a_commit_is_the_same_twice_and_whole(self):
+        first = release.source_archive(self.folder, "1").read_bytes()
+        self.assertEqual(release.source_archive(self.folder, "1").read_bytes(), first)
+        with tarfile.open(fileobj=io.BytesIO(gzip.decompress(first))) as archive:
+            names = archive.getnames()
+        self.assertLessEqual({"brick-1/CMakeLists.txt", "brick-1/dev", "brick-1/LICENSE"}, set(names))
+
+
+if __name__ == "__main__":
+    unittest.main()
