@@ -35,7 +35,7 @@ class Session:
         self.rows, self.faults, self.begin = {}, [], time.monotonic()
         self.count = None if options.all else options.count or DEFAULT_COUNT
         self.known, self.whole = self.read_known()
-        self.tree = tree()
+        self.tree, self.source = tree(), source_hash(ROOT, judge.module)
 
     def read_known(self):
         """{number: row} of results that have the same inputs, and whether they are all that is asked for."""
@@ -90,7 +90,7 @@ class Session:
 
     def save(self, taken, done=False):
         head = {"module": self.judge.module.name, "file": self.judge.module.file, "inputs": self.inputs,
-                "source": source_hash(ROOT, self.judge.module),
+                "source": self.source,
                 "seed": self.options.seed, "mutants": len(self.judge.mutants), "count": self.count,
                 "done": done, **self.tree,
                 "time": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),

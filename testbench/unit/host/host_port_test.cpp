@@ -160,6 +160,19 @@ TEST_F(HostPortTest, ResetdrvEmptiesBothWays) {
   EXPECT_EQ(both_.get("rxdf"), 0u);
 }
 
+TEST_F(HostPortTest, ResetdrvResetsOneRegisterAlone) {
+  const struct { unsigned addr, written, reset; } rows[] = {{kIcr, kRreq, 0}, {kCvr, 0x11, 0x32}, {kIvr, 0x33, 0x0F}};
+  for (const auto& row : rows) {
+    host_write(row.addr, row.written);
+    both_.ref(4);
+    ASSERT_EQ(host_peek(row.addr), row.written);
+    both_.in.hp_reset = true;
+    both_.ref();
+    both_.in.hp_reset = false;
+    EXPECT_EQ(host_peek(row.addr), row.reset);
+  }
+}
+
 TEST_F(HostPortTest, RandomAccessesOfBothSidesAgree) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     random_run(random_seed(seed), 6000);

@@ -86,6 +86,17 @@ TEST_F(InterruptControllerTest, ResetdrvClearsRegistersAndLatches) {
   EXPECT_EQ(read(kStatus), 0u) << "the lines have been high all the time";
 }
 
+TEST_F(InterruptControllerTest, ResetdrvClearsOneRegisterAlone) {
+  for (const unsigned addr : {kMask, kEdgeLevel}) {
+    write(addr, 0x12);
+    both_.ref(4);
+    both_.in.reset = true;
+    both_.ref();
+    both_.in.reset = false;
+    EXPECT_EQ(read(addr), 0u);
+  }
+}
+
 TEST_F(InterruptControllerTest, MaskAndModeHoldEveryBit) {
   for (unsigned bit = 0; bit < 8; ++bit) {
     const auto one = static_cast<std::uint8_t>(1u << bit), other = static_cast<std::uint8_t>(~one);

@@ -38,23 +38,25 @@ class Lockstep {
   std::function<void(Inputs&)> mutate;  // negative controls: distorts what the model sees
   bool lazy = false;  // executes the model's edges only when it asks for them, or when its inputs change
 
-  void tick() {
-    apply();
+  // `moved`: inputs may have. While the model is judged, it sleeps as long as they rest and it promises nothing.
+  void tick(bool moved = true) {
+    if (moved || !model_judged()) apply();
     const Outputs before = judged();
     const Tick promised = model_.next_event();
     ++now_;
     if (!model_judged()) rtl_.tick();
-    if (!lazy || promised <= now()) model_.advance(now());
+    if (!(lazy || model_judged()) || promised <= now()) model_.advance(now());
     compare();
     if (judged() != before && promised > now())
       note("outputs changed, but next_event() said tick " + std::to_string(promised));
   }
   void ticks(int n) {
-    for (int i = 0; i < n; ++i) tick();
+    for (int i = 0; i < n; ++i) tick(i == 0);
   }
   // Through the next edge of clk_ref, n times.
   void ref(int n = 1) {
-    for (Tick end = next_ref_edge(now()) + (n - 1) * kTicksPerRef; now() < end;) tick();
+    const Tick begin = now(), end = next_ref_edge(begin) + (n - 1) * kTicksPerRef;
+    while (now() < end) tick(now() == begin);
   }
   void reset() {
     apply();
