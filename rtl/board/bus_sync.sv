@@ -31,23 +31,22 @@ module bus_sync (
 );
 
   // ---------------------------------------------------------------- clk_pwm: pins
-  // Only the second stage looks at the first. The address has one: it counts when it stands.
-  (* async_reg = "true" *) logic [1:0] rd1_q, rd2_q, wr1_q, wr2_q;
-  (* async_reg = "true" *) logic       rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q;
-  logic [1:0]  rd3_q, wr3_q;
+  // Strobes pass two stages and counts a third. The address has one: it counts when it stands.
+  logic [1:0]  rd2_q, wr2_q, rd3_q, wr3_q;
+  logic        rd_low2_q, wr_low2_q;
+  sync2 #(.Width(6)) u_strobe_sync (
+    .clk_i (clk_pwm_i), .rst_ni,
+    .d_i   ({rd_falls_i, wr_falls_i, ~pa_rd_ni, ~pa_wr_ni}),
+    .q_o   ({rd2_q, wr2_q, rd_low2_q, wr_low2_q})
+  );
   logic [24:0] pins_q;  // {int, aa, x, addr}
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      {rd1_q, rd2_q, rd3_q}                        <= 6'h0;
-      {wr1_q, wr2_q, wr3_q}                        <= 6'h0;
-      {rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q} <= 4'h0;
-      pins_q                                       <= 25'h0;
+      {rd3_q, wr3_q} <= 4'h0;
+      pins_q         <= 25'h0;
     end else begin
-      {rd1_q, rd2_q, rd3_q}  <= {rd_falls_i, rd1_q, rd2_q};
-      {wr1_q, wr2_q, wr3_q}  <= {wr_falls_i, wr1_q, wr2_q};
-      {rd_low1_q, rd_low2_q} <= {~pa_rd_ni, rd_low1_q};
-      {wr_low1_q, wr_low2_q} <= {~pa_wr_ni, wr_low1_q};
-      pins_q                 <= {pa_int_i, pa_aa_i, pa_x_i, pa_addr_i};
+      {rd3_q, wr3_q} <= {rd2_q, wr2_q};
+      pins_q         <= {pa_int_i, pa_aa_i, pa_x_i, pa_addr_i};
     end
   end
 

@@ -39,25 +39,23 @@ module dpram (
   // Falls and levels of the strobes pass two flip-flops. Select and address have one, so they are looked at a clock
   // later than the strobe: pins have delays of their own, up to a clock, and what is taken is taken back when the
   // strobe has ended before it acts.
-  (* async_reg = "true" *) logic [1:0] rd1_q, rd2_q, wr1_q, wr2_q;
-  (* async_reg = "true" *) logic       rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q;
-  logic [1:0]  rd3_q, wr3_q;
-  logic        sel_q;
+  logic [1:0]  rd2_q, wr2_q, rd3_q, wr3_q;
+  logic        rd_low2_q, wr_low2_q, sel_q;
   logic [14:0] pins_q;
+  sync2 #(.Width(6)) u_strobe_sync (
+    .clk_i (clk_pwm_i), .rst_ni,
+    .d_i   ({rd_falls_i, wr_falls_i, ~cpu_rd_ni, ~cpu_wr_ni}),
+    .q_o   ({rd2_q, wr2_q, rd_low2_q, wr_low2_q})
+  );
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      {rd1_q, rd2_q, rd3_q}                        <= 6'h0;
-      {wr1_q, wr2_q, wr3_q}                        <= 6'h0;
-      {rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q} <= 4'h0;
-      sel_q                                        <= 1'b0;
-      pins_q                                       <= 15'h0;
+      {rd3_q, wr3_q} <= 4'h0;
+      sel_q          <= 1'b0;
+      pins_q         <= 15'h0;
     end else begin
-      {rd1_q, rd2_q, rd3_q}  <= {rd_falls_i, rd1_q, rd2_q};
-      {wr1_q, wr2_q, wr3_q}  <= {wr_falls_i, wr1_q, wr2_q};
-      {rd_low1_q, rd_low2_q} <= {~cpu_rd_ni, rd_low1_q};
-      {wr_low1_q, wr_low2_q} <= {~cpu_wr_ni, wr_low1_q};
-      sel_q                  <= cpu_sel_i;
-      pins_q                 <= {cpu_addr_i, cpu_x_i};
+      {rd3_q, wr3_q} <= {rd2_q, wr2_q};
+      sel_q          <= cpu_sel_i;
+      pins_q         <= {cpu_addr_i, cpu_x_i};
     end
   end
 

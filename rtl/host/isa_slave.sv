@@ -66,9 +66,9 @@ module isa_slave (
 
   // ---------------------------------------------------------------- clk_pwm: synchroniser, samples of LA and data
   // A reset leaves the synchroniser active: a command that is low then is part of a cycle that nobody knows.
-  (* async_reg = "true" *) logic [3:0]  cmd1_q, cmd2_q;
-  (* async_reg = "true" *) logic [15:0] sd1_q, sd2_q;
-  (* async_reg = "true" *) logic [6:0]  la1_q, la2_q;
+  logic [3:0]  cmd2_q;
+  logic [15:0] sd2_q;
+  logic [6:0]  la2_q;
   logic [15:0] sd_low_q;  // the last with a write command low
   logic [6:0]  la;
   // The youngest is MEMCS16#, the oldest belongs to the time before the command: LA may go with it. In a slot of 8 bits
@@ -80,26 +80,19 @@ module isa_slave (
   logic        io_decode16_q, window_flat_q, slot8_q;
 
   assign la     = slot8_q ? {4'h0, isa_sa_i[19:17]} : isa_la_i;
+  sync2 #(.Width(27), .Reset({4'hF, 23'h0})) u_pin_sync (
+    .clk_i (clk_pwm_i), .rst_ni,
+    .d_i   ({~{isa_memw_ni, isa_memr_ni, isa_iow_ni, isa_ior_ni}, isa_sd_i, la}),
+    .q_o   ({cmd2_q, sd2_q, la2_q})
+  );
   assign la_hit = (la2_q[2:0] == window_q[5:3]) & (slot8_q | (la2_q[6:3] == window_q[9:6]));
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      cmd1_q   <= 4'hF;
-      cmd2_q   <= 4'hF;
-      sd1_q    <= 16'h0;
-      sd2_q    <= 16'h0;
       sd_low_q <= 16'h0;
-      la1_q    <= 7'h0;
-      la2_q    <= 7'h0;
       la_hit_q <= 4'h0;
     end else begin
-      cmd1_q   <= ~{isa_memw_ni, isa_memr_ni, isa_iow_ni, isa_ior_ni};
-      cmd2_q   <= cmd1_q;
-      sd1_q    <= isa_sd_i;
-      sd2_q    <= sd1_q;
       if (cmd2_q[Iow] | cmd2_q[Memw]) sd_low_q <= sd2_q;
-      la1_q    <= la;
-      la2_q    <= la1_q;
       la_hit_q <= {la_hit_q[2:0], la_hit};
     end
   end
@@ -107,13 +100,13 @@ module isa_slave (
   // ---------------------------------------------------------------- clk_ref: address, switches, RESETDRV
   logic [16:0] sa_q;
   logic        aen_q, sbhe_nq;
-  (* async_reg = "true" *) logic [1:0] resetdrv_q;
+  logic        resetdrv;
+  sync2 u_resetdrv_sync (.clk_i(clk_ref_i), .rst_ni, .d_i(isa_resetdrv_i), .q_o(resetdrv));
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
       sa_q          <= 17'h0;
       aen_q         <= 1'b0;
       sbhe_nq       <= 1'b1;
-      resetdrv_q    <= 2'b00;
       io_base_q     <= 8'h0;
       io_decode16_q <= 1'b0;
       window_q      <= 10'h0;
@@ -123,7 +116,6 @@ module isa_slave (
       sa_q          <= isa_sa_i[16:0];
       aen_q         <= isa_aen_i;
       sbhe_nq       <= isa_sbhe_ni;
-      resetdrv_q    <= {resetdrv_q[0], isa_resetdrv_i};
       io_base_q     <= io_base_i;
       io_decode16_q <= io_decode16_i;
       window_q      <= window_i;
@@ -131,7 +123,7 @@ module isa_slave (
       slot8_q       <= slot8_i;
     end
   end
-  assign host_reset_o = resetdrv_q[1];
+  assign host_reset_o = resetdrv;
 
   // ---------------------------------------------------------------- decoding, at the start of a cycle
   logic       io_hit, mem_hit, byte8;
@@ -185,7 +177,7 @@ module isa_slave (
   assign finish   = (cycle_q == Done) | (cycle_q == DoneShown);
   assign active   = (cycle_q != Idle) & ~finish;
   assign start    = ~active & (cmd2_q != 4'h0);
-  assign ends     = active & (cmd2_q == 4'h0) & ~resetdrv_q[1];
+  assign ends     = active & (cmd2_q == 4'h0) & ~resetdrv;
   assign spoilt   = active & ((cmd2_q & ~kind_q) != 4'h0);  // a second command
   assign io_load  = (cycle_q == Start) & kind_q[Ior] & (target_q[Port] | target_q[Pic] | target_q[Other]);
   assign mem_load = (cycle_q == Fetch) & ~mem_busy_i;
@@ -210,7 +202,7 @@ module isa_slave (
       if (cycle_q == Shown) cycle_d = DoneShown;
       else                  cycle_d = Done;
     end
-    if (spoilt || resetdrv_q[1]) cycle_d = Hold;
+    if (spoilt || resetdrv) cycle_d = Hold;
   end
 
   always_comb begin
@@ -257,7 +249,7 @@ module isa_slave (
           (io_addr_q == brick_regs_pkg::HostIoPageAddr[3:0])) begin
         page_q <= wdata_q[brick_regs_pkg::HostIoPagePageLsb +: brick_regs_pkg::HostIoPagePageWidth];
       end
-      if (resetdrv_q[1]) begin
+      if (resetdrv) begin
         target_q <= 4'h0;
         page_q   <= 2'b00;
       end
