@@ -8,8 +8,8 @@ what others hold:
   proofs  testbench/formal, of the modules that docs/design-files.txt gives the requirement
   scores  of these modules and folders, as docs/mutation.md has them
 
-  (no option)      fails when a requirement has no rules, when a cover of the plan was not counted often enough, and
-                   when the page is not what --write would write
+  (no option)      fails when a requirement has no rules, when the plan has no row for a claimed one, when a cover of
+                   the plan was not counted often enough, and when the page is not what --write would write
   --write          writes the page
   --covers FILE... takes the covers of `brick regress plans/covers.toml` (report.json) into results/covers.json, writes
                    the page
@@ -226,6 +226,9 @@ def main():
     requirements = traceability.read_requirements(root)
     problems += [f"{RULES}: {name} has no rules" for name in requirements if name not in rules]
     problems += [f"{RULES}: '{name}' is no requirement" for name in rules if name not in requirements]
+    planned = {name for row in verification_plan.rows(root)[0] for name in row.ids}
+    problems += [f"docs/claimed.txt: {name} is claimed, but no row of {verification_plan.PLAN} names it"
+                 for name in traceability.lines_of(root / "docs/claimed.txt") if name not in planned]
     problems += verification_plan.unreached(root)
     text = page(root, rules)
     if options.write or options.covers:

@@ -82,6 +82,10 @@ class SignOff(Tree):
         self.write("docs/requirement-rules.txt", "BREQ-1: host-bus:5.3\nBREQ-2: the manual\n")
         self.expect(self.run_tool("signoff.py", "--write"), 1, "expected ID: citations")
 
+    def test_a_claim_that_no_row_of_the_plan_names_fails(self):
+        self.write("docs/verification-plan.md", PLAN.format("listed").replace("BREQ-1 to ", ""))
+        self.expect(self.run_tool("signoff.py", "--write"), 1, "BREQ-1 is claimed, but no row of")
+
     def test_a_cover_that_was_not_counted_fails(self):
         self.expect(self.plan("`breq: pulses` >= 1"), 1, "`breq: pulses`: nothing of that name was counted")
 
