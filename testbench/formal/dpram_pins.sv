@@ -102,21 +102,31 @@ module dpram_pins_rules (
   assign reads   = !rd_ni && sel_i;
   assign ours    = was_low && sel_q && low_q >= 4'd5 && (~rd_ni | ~wr_ni);
   always_comb begin
+    // guarantee: power-on
     assume (rst_ni == started_q);
     assume (awake_q || (rd_ni && wr_ni && !host_sel_i && !host_wr_i));
+    // guarantee: host-bus:2.5/6, `bus: a, *`
     assume (rd_ni || wr_ni);
+    // guarantee: host-bus:2.2/113, `bus: 113, *`; host-bus:2.2/114, `bus: 114, *`
     assume ((!rd_nq || rd_ni || rd_fell_q == 3'b000) && (!wr_nq || wr_ni || wr_fell_q == 3'b000));
     if (was_low) begin
+      // guarantee: host-bus:2.2/113, `bus: 113, *`; host-bus:2.2/114, `bus: 114, *`
       assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
+      // guarantee: host-bus:2.5/7, `bus: b, *`
       assume (sel_i == sel_q && addr_i == addr_q);
+      // guarantee: host-bus:2.6/6, `bus: w1, *`
       assume (low_q < 4'd3 || wdata_i == wdata_q);
+      // guarantee: host-bus:2.2/118, `bus: 118, *`; host-bus:2.2/102, `bus: 102, *`
       assume (!rise || !sel_q || (!wait_q && low_q >= 4'd7));
     end
+    // guarantee: isa_slave R3, R4
     assume (!host_wr_i || (!host_sel_i && !host_rd_i));
     if (step_q != 3'd1) begin
+      // guarantee: isa_slave R3
       assume (host_sel_i == host_sel_q && host_wr_i == host_wr_q && host_wdata_i == host_wdata_q);
       assume (host_rd_i == host_rd_q && host_addr_i == host_addr_q && host_be_i == host_be_q);
     end else begin
+      // guarantee: isa_slave R3
       assume (!host_wr_i || (host_sel_q && !host_sel_i && !host_rd_q));
       assume (!host_sel_q ||
               (host_rd_i == host_rd_q && host_addr_i == host_addr_q && host_be_i == host_be_q));
