@@ -17,6 +17,8 @@ int console_command(const RunOptions& options, const std::string& history);  // 
 struct ServeOptions {
   RunOptions run;
   std::string listen = "127.0.0.1:1025";
+  std::string page;  // where the page is, "" = there is none
+  bool page_read_only = false;
   bool free = false;             // simulated time does not follow the clock on the wall
   bool save_takes_long = false;  // SAVE is answered before it is over
   int end_with = 0;              // process that it ends with, 0: none

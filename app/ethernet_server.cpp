@@ -9,6 +9,7 @@
 #include <asio.hpp>
 
 #include "app/ethernet_connection.h"
+#include "app/place.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick {
@@ -22,13 +23,7 @@ constexpr int kAttempts = 16;  // to find a port that both protocols have
 constexpr std::chrono::milliseconds kAcceptPause{100};
 
 tcp::endpoint endpoint_of(asio::io_context& io, const std::string& place) {
-  const std::size_t colon = place.rfind(':');
-  std::string host = place.substr(0, colon);
-  const std::string port = colon == std::string::npos ? "" : place.substr(colon + 1);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  const bool digits = !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
-  if (host.empty() || !digits || std::stoul(port) > UINT16_MAX)
-    throw UsageError(fmt::format("--listen {}: is no place; expected HOST:PORT, for example 127.0.0.1:1025", place));
+  const auto [host, port] = parse_place("--listen", place, "127.0.0.1:1025");
   asio::error_code error;
   const auto found = tcp::resolver(io).resolve(host, port, tcp::resolver::numeric_service, error);
   if (error || found.empty())

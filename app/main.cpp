@@ -104,6 +104,10 @@ struct Commands {
     serve->add_option("--listen", serve_options.listen, "where, TCP and UDP; port 0 takes a free one")
         ->type_name("HOST:PORT")
         ->capture_default_str();
+    auto* page = serve->add_option("--page", serve_options.page, "a page to look at it in a browser (docs/page.md)")
+                     ->type_name("[HOST:]PORT");
+    serve->add_flag("--page-read-only", serve_options.page_read_only, "the page has no buttons and no terminal")
+        ->needs(page);
     auto* realtime = serve->add_flag("--realtime", "simulated time follows the clock on the wall, if it can (default)");
     serve->add_flag("--free", serve_options.free, "simulated time passes only while a client waits, and then freely")
         ->excludes(realtime);

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 #include "app/byte_text.h"
 #include "app/commands.h"
 #include "app/ethernet_server.h"
+#include "app/page/page.h"
 #include "app/session_end.h"
 #include "app/set_up.h"
 #include "app/simulation.h"
@@ -57,6 +60,15 @@ class AddressFile {
   std::string name_;
 };
 
+void show(Page& page, const std::function<void(const std::string&)>& tell) {
+  std::cout << "page at " << page.server().address() << std::endl;
+  if (page.server().beyond_loopback())
+    tell(
+        "the page is reached from other machines: nothing of it is encrypted, its address is its only key, and the "
+        "Ethernet port has no password");
+  page.start();
+}
+
 }  // namespace
 
 int serve_command(const ServeOptions& options) {
@@ -72,9 +84,6 @@ int serve_command(const ServeOptions& options) {
   SimulationLoop loop(simulation.bus(), options.free);
   if (!address.empty()) processor.set_address(address);
   processor.on_address = [&](const std::string& bytes) { address_file.write(bytes); };
-  processor.on_reply = [&](EthernetServer::Client client, std::string bytes) {
-    server.reply(client, std::move(bytes));
-  };
   const auto tell = [&](const std::string& text) { simulation.tell("brick serve: " + text); };
   server.on_request = [&](EthernetServer::Client client, const EthernetPacket& packet) {
     loop.post([&processor, client, packet] { processor.request(client, packet); });
@@ -83,7 +92,16 @@ int serve_command(const ServeOptions& options) {
     loop.post([&processor, client] { processor.close(client); });
   };
   server.on_trouble = [&](const std::string& text) { loop.post([&, text] { tell(text); }); };
+  std::unique_ptr<Page> page;
+  if (!options.page.empty())
+    page = std::make_unique<Page>(PageServer::Options{options.page, options.page_read_only, ""}, simulation, config,
+                                  processor, loop);
   simulation.progress_text = [&] { return fmt::format(", {} of {} clients", server.clients(), server.kMostClients); };
+
+  processor.on_reply = [&](EthernetServer::Client client, std::string bytes) {
+    if (PagePort::is_page(client)) return page->reply(client, bytes);
+    server.reply(client, std::move(bytes));
+  };
 
   std::vector<std::string> failures;
   try {
@@ -96,6 +114,7 @@ int serve_command(const ServeOptions& options) {
         throw std::runtime_error(
             "the controller does not answer after power-on; expected an answer within 500 ms, see --jumper E3");
       std::cout << fmt::format("listening on {}, TCP and UDP", server.place()) << std::endl;
+      if (page) show(*page, tell);
       server.start();
       loop.on_speed = [&](double speed) { processor.set_speed(speed); };
       loop.run([&] { return processor.busy(); }, [&](Tick limit) { processor.run_until(limit); });
@@ -104,6 +123,7 @@ int serve_command(const ServeOptions& options) {
     failures.emplace_back(e.what());
   }
   server.stop();
+  if (page) page->stop();
   const Simulation::TimingVerdict timing = simulation.timing_verdict();
   for (const auto& list : {simulation.machine().take_run_errors(), timing.failures})
     failures.insert(failures.end(), list.begin(), list.end());

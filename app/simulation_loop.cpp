@@ -41,6 +41,7 @@ void SimulationLoop::run(const std::function<bool()>& busy, const std::function<
   Tick goal = bus_.now();  // of time that passes while nobody waits, in steps of a nap
   for (;;) {
     work();
+    if (on_turn) on_turn();
     const Tick now = bus_.now(), due = free_ ? now : pacing.due(now);
     if (due >= now + nap) goal = due;
     const Tick limit = !busy() ? goal : free_ ? kNever : due + lead;

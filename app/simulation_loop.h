@@ -25,6 +25,9 @@ class SimulationLoop {
   // Told before each piece of time: how much of it passes for one of the wall's, at most 1; always 1 when `free`.
   std::function<void(double)> on_speed;
 
+  // Between two pieces of time, often; it changes nothing of the simulation.
+  std::function<void()> on_turn;
+
   [[noreturn]] void run(const std::function<bool()>& busy, const std::function<void(Tick)>& run_until);
 
  private:

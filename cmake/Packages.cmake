@@ -12,6 +12,7 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
 find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)  # sockets of the debugger's server and the Ethernet port
+find_path(BOOST_INCLUDE_DIR boost/beast.hpp REQUIRED)  # websocket of the page, headers alone
 pkg_check_modules(LIBEDIT REQUIRED IMPORTED_TARGET libedit)  # line editing of brick console
 find_package(pugixml REQUIRED)  # JUnit's XML of brick regress
 find_package(ZLIB REQUIRED)  # FST files

@@ -14,21 +14,32 @@ using namespace cpu;
 Cpu::Cpu(DeviceBus* devices) : s_(std::make_unique<State>(*this, devices)) {}
 Cpu::~Cpu() = default;
 
-std::uint8_t* Cpu::map(std::uint32_t base, std::uint32_t bytes, RegionOptions options) {
+void Cpu::State::check_free(std::uint32_t base, std::uint32_t bytes) const {
   if (bytes == 0 || base % 4 != 0 || bytes % 4 != 0)
     throw std::invalid_argument("Cpu::map: a region consists of whole words");
   if (bytes - 1 > UINT32_MAX - base)
     throw std::invalid_argument("Cpu::map: region passes the end of the address space");
-  for (const Region& r : s_->regions) {
+  for (const Region& r : regions) {
     if (r.holds(base, 1) || (base <= r.base && r.base - base < bytes))
       throw std::invalid_argument("Cpu::map: regions overlap");
   }
+}
+
+std::uint8_t* Cpu::map(std::uint32_t base, std::uint32_t bytes, RegionOptions options) {
+  s_->check_free(base, bytes);
   Region region{base, bytes, options, {}};
   region.data.reset(static_cast<std::uint8_t*>(std::calloc(bytes, 1)));
   if (region.data == nullptr) throw std::bad_alloc();
   s_->regions.push_back(std::move(region));
   s_->forget_translations();
   return s_->regions.back().data.get();
+}
+
+void Cpu::share(std::uint32_t base, std::uint32_t bytes, const std::uint8_t* data) {
+  s_->check_free(base, bytes);
+  // Nothing of the CPU writes to a region that is read only.
+  s_->regions.push_back({base, bytes, {true, false, 0}, {const_cast<std::uint8_t*>(data), FreeOwned{false}}});
+  s_->forget_translations();
 }
 
 void Cpu::set_wait(std::uint32_t base, Cycle wait) {

@@ -53,6 +53,8 @@ class Cpu {
     Cycle wait = 0;
   };
   std::uint8_t* map(std::uint32_t base, std::uint32_t bytes, RegionOptions options);  // zeroed; owned by the Cpu
+  // Maps memory of somebody else, who keeps it where it is, for reading only.
+  void share(std::uint32_t base, std::uint32_t bytes, const std::uint8_t* data);
   void set_wait(std::uint32_t base, Cycle wait);
   std::uint8_t* memory(std::uint32_t address, std::uint32_t bytes);  // nullptr where not mapped
   void invalidate_code();                                            // after memory was changed from outside

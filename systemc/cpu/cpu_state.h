@@ -34,13 +34,17 @@ enum Cause : std::uint32_t {
   kEnvironmentCall = 11,
 };
 
+struct FreeOwned {
+  bool owned = true;
+  void operator()(void* p) const {
+    if (owned) std::free(p);
+  }
+};
+
 struct Region {
-  struct Free {
-    void operator()(void* p) const { std::free(p); }
-  };
   std::uint32_t base, bytes;
   Cpu::RegionOptions options;
-  std::unique_ptr<std::uint8_t, Free> data;  // from calloc: the host gives pages when they are touched
+  std::unique_ptr<std::uint8_t, FreeOwned> data;  // from calloc: the host gives pages when they are touched
   bool holds(std::uint32_t address, std::uint32_t count) const {
     return address >= base && address - base < bytes && count <= bytes - (address - base);
   }
@@ -82,6 +86,8 @@ enum class Access { kDone, kDevice, kHalt, kFault, kRetry };
 
 struct Cpu::State {
   State(Cpu& owner, DeviceBus* bus) : cpu(owner), devices(bus) { forget_translations(); }
+
+  void check_free(std::uint32_t base, std::uint32_t bytes) const;  // throws std::invalid_argument
 
   // memory.cpp
   cpu::Region* find(std::uint32_t address, std::uint32_t bytes);

@@ -10,7 +10,7 @@ import tempfile
 
 
 class Browser:
-    """A page of a file; `said`: what it reported on its console, `asked`: addresses it wanted."""
+    """A page of a file or an address; `said`: what it reported on its console, `asked`: addresses it wanted."""
 
     def __init__(self):
         program = shutil.which("chromium")
@@ -73,8 +73,11 @@ class Browser:
                 return answer["result"]
 
     def open(self, file):
+        self.show(pathlib.Path(file).resolve().as_uri())
+
+    def show(self, address):
         self.loaded = False
-        self.call("Page.navigate", url=pathlib.Path(file).resolve().as_uri())
+        self.call("Page.navigate", url=address)
         while not self.loaded:
             self.take()
 

@@ -99,6 +99,18 @@ TEST_F(CpuMemory, ReadOnlyMemoryRefusesStores) {
   }
 }
 
+TEST_F(CpuMemory, SharedMemoryIsReadAsItStandsAndNeverWritten) {
+  std::uint32_t theirs[1024] = {1, 2, 3};
+  cpu.share(0x3000'0000, sizeof theirs, reinterpret_cast<const std::uint8_t*>(theirs));
+  EXPECT_EQ(load(rv::lw, 0x3000'0004), 2u);
+  theirs[1] = 22;
+  EXPECT_EQ(load(rv::lw, 0x3000'0004), 22u);
+  store(rv::sw, 0x3000'0004, 7);
+  EXPECT_EQ(csr(rv::mcause), 7u);
+  EXPECT_EQ(theirs[1], 22u);
+  EXPECT_THROW(cpu.share(0x3000'0FFC, 8, reinterpret_cast<const std::uint8_t*>(theirs)), std::invalid_argument);
+}
+
 TEST_F(CpuMemory, Mask24KeepsTheLow24BitsOfEachWord) {
   cpu.map(0xC000'0000, 0x2000, {false, true, 0});
   for (int round = 0; round < 2; ++round) {

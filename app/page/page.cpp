@@ -1,0 +1,101 @@
+#include "app/page/page.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "app/build_info.h"
+#include "app/byte_text.h"
+
+namespace brick {
+
+using nlohmann::json;
+
+namespace {
+
+PageServer::Options with_about(PageServer::Options options, const MachineConfig& config) {
+  options.about = json{{"kind", "about"},
+                       {"version", build_info()["version"]},
+                       {"board", config.board.name},
+                       {"engine", engine_name(config.engine)},
+                       {"read_only", options.read_only}}
+                      .dump();
+  return options;
+}
+
+// Without the bytes that frame it.
+std::vector<std::string> lines_of(const std::string& answer) {
+  std::vector<std::string> lines;
+  std::string line;
+  for (const char c : answer) {
+    if (c == '\r') lines.push_back(utf8_text(std::exchange(line, {})));
+    if (c >= ' ' || c < 0) line.push_back(c);
+  }
+  if (!line.empty()) lines.push_back(utf8_text(line));
+  return lines;
+}
+
+}  // namespace
+
+Page::Page(const PageServer::Options& options, Simulation& simulation, const MachineConfig& config,
+           CommunicationsProcessor& processor, SimulationLoop& loop)
+    : loop_(loop),
+      machine_(simulation.machine()),
+      server_(with_about(options, config)),
+      snapshot_(simulation, config.firmware),
+      port_(processor) {
+  server_.on_open = [this](PageServer::Client) { loop_.post([this] { wanted_ = true; }); };
+  server_.on_close = [this](PageServer::Client client) {
+    loop_.post([this, client] {
+      port_.close(PagePort::kFirst + client);
+      if (watched_.erase(client) != 0) watch_all();
+    });
+  };
+  server_.on_command = [this](PageServer::Client client, const PageCommand& one) {
+    loop_.post([this, client, one] { command(client, one); });
+  };
+  server_.on_watch = [this](PageServer::Client client, const PageWatch& watch) {
+    loop_.post([this, client, watch] {
+      watched_[client] = watch.items;
+      watch_all();
+    });
+  };
+  loop_.on_turn = [this] { turn(); };
+}
+
+Page::~Page() { loop_.on_turn = nullptr; }
+
+// Between two pieces of simulated time.
+void Page::turn() {
+  if (server_.viewers() == 0) return;
+  snapshot_.sample();
+  const auto wall = std::chrono::steady_clock::now();
+  if (wall < next_ || (!wanted_ && machine_.now() == shown_)) return;
+  next_ = wall + kEvery;
+  shown_ = machine_.now();
+  wanted_ = false;
+  server_.publish(snapshot_.take().dump());
+}
+
+void Page::command(PageServer::Client client, const PageCommand& command) {
+  port_.command(PagePort::kFirst + client, command.line, [this, client, command](const std::string& answer) {
+    server_.answer(client, json{{"kind", "answer"},
+                                {"id", command.id},
+                                {"line", command.line},
+                                {"lines", lines_of(answer)},
+                                {"refused", answer.find('\x07') != std::string::npos},
+                                {"cut", answer.size() >= PagePort::kLongestAnswer}}
+                               .dump());
+  });
+}
+
+// Each of what anybody watches, once.
+void Page::watch_all() {
+  std::vector<std::string> items;
+  for (const auto& [client, list] : watched_)
+    for (const std::string& item : list)
+      if (std::find(items.begin(), items.end(), item) == items.end()) items.push_back(item);
+  snapshot_.watch(items);
+  wanted_ = true;
+}
+
+}  // namespace brick

@@ -1,0 +1,48 @@
+// A page to look at a served controller (`brick serve --page`, docs/page.md): joins what is read of the machine, the
+// sockets, and the port for what the page's buttons and terminal say.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/page/page_port.h"
+#include "app/page/page_server.h"
+#include "app/page/snapshot.h"
+#include "app/simulation_loop.h"
+
+namespace brick {
+
+class Page {
+ public:
+  static constexpr std::chrono::milliseconds kEvery{50};  // of the wall, between two snapshots
+
+  // Takes on_turn of the loop. All that is given lives longer.
+  Page(const PageServer::Options& options, Simulation& simulation, const MachineConfig& config,
+       CommunicationsProcessor& processor, SimulationLoop& loop);
+  ~Page();
+  Page(const Page&) = delete;
+
+  void start() { server_.start(); }
+  void stop() { server_.stop(); }
+  const PageServer& server() const { return server_; }
+  void reply(PagePort::Client client, const std::string& bytes) { port_.reply(client, bytes); }
+
+ private:
+  void turn();
+  void command(PageServer::Client client, const PageCommand& command);
+  void watch_all();
+
+  SimulationLoop& loop_;
+  Machine& machine_;
+  PageServer server_;
+  Snapshot snapshot_;
+  PagePort port_;
+  std::map<PageServer::Client, std::vector<std::string>> watched_;
+  std::chrono::steady_clock::time_point next_;
+  Tick shown_ = -1;
+  bool wanted_ = false;  // by somebody who has none yet
+};
+
+}  // namespace brick

@@ -1,0 +1,340 @@
+#include "app/page/snapshot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/byte_text.h"
+#include "app/hand_encoder.h"
+#include "systemc/core/usage_error.h"
+
+namespace brick {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr Tick kSampleEvery = ns_to_ticks(10'000'000);
+constexpr std::size_t kMostSamples = 1000;  // nobody takes them: the oldest go
+constexpr unsigned kMotors = 32, kSystems = 16, kMotorsOfNothing = 8;
+constexpr unsigned kWordBits = 24, kMotorWords = 0x80, kSystemWords = 0x2000, kSystemStride = 0x100;
+
+// Words of the main memory, firmware:1.10.
+constexpr std::uint32_t kServoCount = 0x00, kGlobalStatus = 0x06, kRealTime = 0x0B, kWatchdog = 0x25, kTasks = 0x37;
+constexpr std::uint32_t kStatus1 = 0x30, kStatus2 = 0x40, kAverageVelocity = 0x6F;                    // of a motor
+constexpr std::uint32_t kRunTimeError = 0x14, kRotary = 0x3E, kCsStatus2 = 0x3F, kCsStatus13 = 0x40;  // of a system
+
+// I-variables.
+constexpr std::uint32_t kI8 = 8, kI10 = 10, kI16 = 16, kI17 = 17, kI19 = 19, kI40 = 40, kI52 = 52;
+constexpr std::uint32_t kMotorBlock = 100, kIxx09 = 9;
+constexpr std::uint32_t kServoDividerBelowDirection = 5;  // I7m02 and I7m07, I6802 and I6807
+
+constexpr std::uint32_t kAssigned = 1u << 15, kSystemShift = 20;  // status word 2 of a motor, firmware:5.3
+constexpr std::uint32_t kLineWords = 300, kProgram = 0;           // longest line; kind of a motion program
+
+double rounded(double value) { return std::round(value * 1e4) / 1e4; }
+
+std::int32_t signed_word(std::uint32_t word) { return static_cast<std::int32_t>(word << 8) >> 8; }
+
+double signed_long(std::uint32_t x, std::uint32_t y) {
+  const auto value = static_cast<std::int64_t>((std::uint64_t{x} << kWordBits | y) << 16) >> 16;
+  return static_cast<double>(value);
+}
+
+}  // namespace
+
+Snapshot::Snapshot(Simulation& simulation, const std::string& firmware)
+    : simulation_(simulation), machine_(simulation.machine()), image_(machine_, firmware) {
+  const Signals& signals = machine_.signals();
+  for (unsigned number = 1; number <= kMotors; ++number) {
+    const auto place = motor_place(machine_.fitted(), number);
+    if (!place) break;
+    const auto id = [&](const char* name) {
+      return *signals.find(fmt::format("{}.ch{}.{}", servo_ic_scope(place->ic), place->channel + 1, name));
+    };
+    pins_[number] = {id("plim"), id("mlim"), id("hmfl"), id("fault"), id("aena")};
+  }
+}
+
+// ------------------------------------------------------------------------------------------------------------- reading
+
+std::optional<std::uint64_t> Snapshot::call(const std::string& function,
+                                            std::initializer_list<std::uint32_t> arguments) {
+  return image_.call(function, arguments);
+}
+
+std::int32_t Snapshot::variable(std::uint32_t number) {
+  return static_cast<std::int32_t>(call("i_integer_of", {number}).value_or(0));
+}
+
+// As an M-variable has it: also what the firmware makes when it is read.
+Snapshot::Word Snapshot::word(std::uint32_t address) {
+  if (!call("word_read_long", {address, ImageCalls::kWords, ImageCalls::kWords + 4})) return {};
+  return {image_.word(0), image_.word(1)};
+}
+
+std::uint64_t Snapshot::signal(const std::string& name) const {
+  const Signals& signals = machine_.signals();
+  const auto id = signals.find(name);
+  return id ? signals.value(*id) : 0;
+}
+
+// -------------------------------------------------------------------------------------------------------------- motors
+
+// Those that are activated or have an axis of a plant; on a board without any its first ones.
+std::vector<unsigned> Snapshot::shown_motors() {
+  std::vector<unsigned> shown;
+  plant::Plant* plant = simulation_.plant();
+  const auto has_axis = [&](unsigned number) {
+    const auto place = motor_place(machine_.fitted(), number);
+    for (std::size_t i = 0; plant != nullptr && place && i < plant->axes(); ++i)
+      if (plant->axis(i).ic() == place->ic && plant->axis(i).channel() == place->channel) return true;
+    return false;
+  };
+  for (unsigned number = 1; number <= kMotors; ++number)
+    if (variable(kMotorBlock * number) != 0 || has_axis(number)) shown.push_back(number);
+  for (unsigned number = 1; shown.empty() && number <= kMotorsOfNothing; ++number) shown.push_back(number);
+  return shown;
+}
+
+void Snapshot::sample() {
+  const Tick now = machine_.now();
+  if (sampled_ && now < *sampled_ + kSampleEvery) return;
+  sampled_ = now;
+  if (sample_times_.size() >= kMostSamples) {
+    sample_times_.clear();
+    for (auto& [number, samples] : samples_) samples.actuals.clear(), samples.errors.clear();
+  }
+  const RecordRow row{static_cast<double>(machine_.now_fs()) * 1e-12};
+  sample_times_.push_back(rounded(row.ms));
+  for (auto& [number, samples] : samples_) {
+    samples.actuals.push_back(rounded(samples.actual.value(row)));
+    samples.errors.push_back(rounded(samples.error.value(row)));
+  }
+}
+
+json Snapshot::motor(unsigned number, double servo_khz) {
+  const std::uint32_t base = kMotorWords * number;
+  if (samples_.count(number) == 0) {  // new on the page: its plots begin here
+    auto columns = record_columns(machine_, fmt::format("motor{0}.actual motor{0}.error", number));
+    const std::vector<double> nothing(sample_times_.size(), NAN);
+    samples_.emplace(number, Samples{columns[0], columns[1], nothing, nothing});
+  }
+  Samples& samples = samples_.at(number);
+  const RecordRow row{};
+  const Word velocity = word(base + kAverageVelocity);
+  const std::int32_t scale = variable(kMotorBlock * number + kIxx09);
+  json result{
+      {"number", number},
+      {"position", rounded(samples.actual.value(row))},
+      {"error", rounded(samples.error.value(row))},
+      {"velocity", rounded(signed_long(velocity.x, velocity.y) / (32.0 * (scale == 0 ? 1 : scale)) * servo_khz)},
+      {"status", {word(base + kStatus1).x, word(base + kStatus2).y}},
+      {"actuals", std::exchange(samples.actuals, {})},
+      {"errors", std::exchange(samples.errors, {})}};
+  const auto pins = pins_.find(number);
+  if (pins == pins_.end()) return result;
+  const Signals& signals = machine_.signals();
+  const Pins& ids = pins->second;
+  result["pins"] = {{"PLIM", signals.value(ids.plus_limit)},
+                    {"MLIM", signals.value(ids.minus_limit)},
+                    {"HMFL", signals.value(ids.home)},
+                    {"FAULT", signals.value(ids.fault)},
+                    {"AENA", signals.value(ids.enable)}};
+  return result;
+}
+
+// -------------------------------------------------------------------------------------------------- coordinate systems
+
+// Of the words that `count` says, from the second on of ImageCalls' own.
+std::string Snapshot::words_text(std::uint32_t count) {
+  constexpr std::uint32_t kFirst = 2;
+  image_.take_text();
+  if (!call("lister_line", {ImageCalls::kWords + 4 * kFirst, count, 0, ImageCalls::kPut})) return "";
+  return utf8_text(image_.take_text());
+}
+
+// The line that executes, as `PE` and `LIST PE` report it: of a program with those that called it, or of the ring.
+json Snapshot::program_line(unsigned system) {
+  constexpr std::uint32_t kFirst = 2;
+  const std::uint32_t cs = system - 1;
+  const auto put_word = [&](std::uint32_t index, std::uint64_t value) {
+    image_.set_word(kFirst + 2 * index, static_cast<std::uint32_t>(value));
+    image_.set_word(kFirst + 2 * index + 1, static_cast<std::uint32_t>(value >> 32));
+  };
+  if (!call("run_executing", {cs, ImageCalls::kWords})) return nullptr;
+  const std::uint32_t depth = image_.word(0);
+  std::string at;
+  std::uint32_t program = 0, offset = 0;
+  for (std::uint32_t i = 0; i <= depth && i < 16; ++i) {
+    program = image_.word(1 + i) & 0xFFFF;
+    offset = image_.word(1 + i) >> 16;
+    at += fmt::format("{}P{}:{}", i == 0 ? "" : ">", program, offset);
+  }
+  std::uint32_t count = 0;
+  if (program != 0) {
+    if (call("program_password_protects", {kProgram, program}).value_or(1) & 0xFF) return {{"at", at}, {"text", ""}};
+    const auto found = static_cast<std::uint32_t>(call("fixed_program_find", {kProgram, program}).value_or(0));
+    if (found == 0) return nullptr;
+    count = static_cast<std::uint32_t>(call("fixed_program_line", {found, offset}).value_or(0));
+    count = std::min(count, kLineWords);
+    for (std::uint32_t i = 0; i < count; ++i) put_word(i, call("fixed_program_word", {found, offset + i}).value_or(0));
+  } else {
+    const std::uint64_t ahead = call("rotary_lines_ahead", {cs}).value_or(0);
+    const auto first = static_cast<std::uint32_t>(ahead), words = static_cast<std::uint32_t>(ahead >> 32);
+    for (; count < words && count < kLineWords; ++count) {
+      const auto place = static_cast<std::uint32_t>(call("rotary_offset", {cs, first, count}).value_or(0));
+      const std::uint64_t value = call("rotary_word", {cs, place}).value_or(0);
+      if (count != 0 && (value >> 47 & 1) != 0) break;  // the next line begins
+      put_word(count, value);
+    }
+    if (count == 0) return nullptr;
+  }
+  return {{"at", at}, {"text", count == 0 ? "" : words_text(count)}};
+}
+
+json Snapshot::system(unsigned number) {
+  const std::uint32_t base = kSystemWords + kSystemStride * (number - 1);
+  const Word status = word(base + kCsStatus13), ring = word(base + kRotary);
+  const std::uint64_t feed = call("run_time_base", {number - 1}).value_or(0);
+  return {{"number", number},
+          {"status", {status.x, word(base + kCsStatus2).y, status.y}},
+          {"feed", rounded(real_of(feed))},
+          {"line", program_line(number)},
+          {"error", word(base + kRunTimeError).y},
+          {"lines", ring.x},
+          {"words", ring.y},
+          {"room", static_cast<std::uint32_t>(call("rotary_room", {number - 1}).value_or(0))}};
+}
+
+// The four views of the rotary buffer's state: `??` and PR stand in the coordinate system, these are the pins.
+json Snapshot::request() {
+  const auto selected = static_cast<std::uint32_t>(call("buffer_request_selected", {}).value_or(kSystems));
+  return {{"selected", selected < kSystems ? json(selected + 1) : json(nullptr)},
+          {"breq", signal("host.breq")},
+          {"irq", signal("host.irq")},
+          {"ist", signal("host.pic.ist")},
+          {"sig", signal("host.pic.sig")},
+          {"msk", signal("host.pic.msk")},
+          {"elr", signal("host.pic.elr")},
+          {"i16", variable(kI16)},
+          {"i17", variable(kI17)}};
+}
+
+// ------------------------------------------------------------------------------------------------- clocks, tasks, dog
+
+// What happened since the snapshot before: the servo clock as counted, the share of time that the CPU slept.
+void Snapshot::measure() {
+  Cpu& cpu = machine_.cpu();
+  const Measure now{static_cast<double>(machine_.now_fs()) * 1e-12, word(kServoCount).x, cpu.cycle(), cpu.slept()};
+  constexpr double kLeast = 20;  // ms
+  if (now.ms - last_.ms >= kLeast) {
+    servo_khz_ = ((now.servo_count - last_.servo_count) & 0xFFFFFF) / (now.ms - last_.ms);
+    if (now.cycle > last_.cycle)
+      asleep_ = static_cast<double>(now.slept - last_.slept) / static_cast<double>(now.cycle - last_.cycle);
+    last_ = now;
+  }
+  const auto direction = static_cast<std::uint32_t>(variable(kI19));
+  phase_cycles_ = static_cast<std::uint32_t>(call("phase_period", {}).value_or(0));
+  servo_cycles_ = phase_cycles_ * static_cast<std::uint32_t>(variable(direction - kServoDividerBelowDirection) + 1);
+  real_time_cycles_ = servo_cycles_ * static_cast<std::uint32_t>(variable(kI8) + 1);
+}
+
+json Snapshot::clocks() {
+  const double cpu_mhz = 1e9 / static_cast<double>(machine_.cpu_period());
+  const auto khz = [&](std::uint32_t cycles) { return cycles == 0 ? 0 : rounded(cpu_mhz * 1e3 / cycles); };
+  return {{"i19", variable(kI19)},           {"source", signal("clock.source")},   {"phase_khz", khz(phase_cycles_)},
+          {"servo_khz", khz(servo_cycles_)}, {"counted_khz", rounded(servo_khz_)}, {"i10", variable(kI10)},
+          {"i52", variable(kI52)},           {"cpu_mhz", rounded(cpu_mhz)}};
+}
+
+// Durations are in half CPU cycles.
+json Snapshot::tasks() {
+  const Word pair = word(kTasks), real_time = word(kRealTime);
+  const double us = static_cast<double>(machine_.cpu_period()) * 1e-9;
+  const auto task = [&](std::uint32_t halves, std::uint32_t period) {
+    return json{{"us", rounded(2 * halves * us)}, {"load", period == 0 ? 0 : rounded(2.0 * halves / period)}};
+  };
+  return {{"phase", task(pair.x, phase_cycles_)},
+          {"servo", task(pair.y, servo_cycles_)},
+          {"real_time", task(real_time.x, real_time_cycles_)},
+          {"real_time_longest", task(real_time.y, real_time_cycles_)},
+          {"asleep", rounded(asleep_)}};
+}
+
+json Snapshot::watchdog() {
+  const Word count = word(kWatchdog);
+  const std::int32_t i40 = variable(kI40);
+  constexpr std::int32_t kI40OfZero = 4095;
+  return {{"count", signed_word(count.y)},
+          {"lowest", signed_word(count.x)},
+          {"reload", i40 == 0 ? kI40OfZero : i40},
+          {"tripped", signal("watchdog.tripped")}};
+}
+
+// --------------------------------------------------------------------------------------------------------------- watch
+
+void Snapshot::watch(const std::vector<std::string>& items) {
+  watched_.clear();
+  for (const std::string& item : items) {
+    Watched one{item, "", {}};
+    try {
+      one.columns = record_columns(machine_, item);
+    } catch (const UsageError& e) { one.mistake = utf8_text(e.what()); }
+    if (one.columns.size() > 1) one.mistake = "expected one value";
+    watched_.push_back(std::move(one));
+  }
+}
+
+json Snapshot::watched() const {
+  const RecordRow row{static_cast<double>(machine_.now_fs()) * 1e-12};
+  json values = json::object();
+  for (const Watched& one : watched_) {
+    if (one.mistake.empty())
+      values[one.item] = one.columns.front().value(row);
+    else
+      values[one.item] = one.mistake;
+  }
+  return values;
+}
+
+// ------------------------------------------------------------------------------------------------------------ snapshot
+
+json Snapshot::take() {
+  image_.refresh();
+  measure();
+  const double cpu_mhz = 1e9 / static_cast<double>(machine_.cpu_period());
+  const double servo_khz = servo_cycles_ == 0 ? 0 : cpu_mhz * 1e3 / servo_cycles_;
+  const Word global = word(kGlobalStatus);
+  json motors = json::array(), systems = json::array();
+  std::uint32_t used = 1;  // coordinate system 1 is always shown
+  const std::vector<unsigned> shown = shown_motors();
+  for (auto at = samples_.begin(); at != samples_.end();)
+    at = std::find(shown.begin(), shown.end(), at->first) == shown.end() ? samples_.erase(at) : std::next(at);
+  for (const unsigned number : shown) {
+    motors.push_back(motor(number, servo_khz));
+    const std::uint32_t status2 = motors.back()["status"][1];
+    if ((status2 & kAssigned) != 0) used |= 1u << (status2 >> kSystemShift & 0xF);
+  }
+  for (unsigned number = 1; number <= kSystems; ++number) {
+    json one = (used >> (number - 1) & 1) != 0 || call("rotary_room", {number - 1}).value_or(0) != 0 ||
+                       word(kSystemWords + kSystemStride * (number - 1) + kRotary).x != 0
+                   ? system(number)
+                   : json(nullptr);
+    if (!one.is_null()) systems.push_back(std::move(one));
+  }
+  return {{"kind", "state"},
+          {"ms", rounded(static_cast<double>(machine_.now_fs()) * 1e-12)},
+          {"times", std::exchange(sample_times_, {})},
+          {"motors", std::move(motors)},
+          {"systems", std::move(systems)},
+          {"global", {global.x, global.y}},
+          {"request", request()},
+          {"clocks", clocks()},
+          {"tasks", tasks()},
+          {"watchdog", watchdog()},
+          {"watch", watched()}};
+}
+
+}  // namespace brick

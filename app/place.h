@@ -1,0 +1,15 @@
+// HOST:PORT as options have it.
+#pragma once
+
+#include <string>
+
+namespace brick {
+
+struct Place {
+  std::string host, port;  // an IPv6 address without its brackets; up to five digits
+};
+
+// Throws UsageError, with `example` in it.
+Place parse_place(const std::string& option, const std::string& text, const std::string& example);
+
+}  // namespace brick

@@ -1,0 +1,151 @@
+"""The page of `brick serve --page` in Debian's Chromium: it opens, plots move, a button moves the motor, a limit lamp
+lights, the terminal answers; narrow and wide, light and dark; nothing on the console, nothing asked from outside.
+
+usage: page_browser.py BRICK CASE; each CASE is one test. BRICK_PAGE_PNG=FOLDER keeps pictures of it.
+"""
+import os
+import pathlib
+import tempfile
+import time
+
+import command
+from browser import Browser
+from command import check
+from page_command import served_page
+from served import PATIENCE
+
+# An end switch 3,000 counts up, for all motors.
+PLANT = (command.EXAMPLES / "plants" / "dac8.toml").read_text().replace('drive = "torque"', 'drive = "torque"\n'
+                                                                        'plus_limit = 3000', 1)
+MOTOR_1 = 'document.querySelector("[data-motor=\\"1\\"]")'
+LOOKS = [(width, scheme) for width in (1440, 420) for scheme in ("light", "dark")]
+
+
+class Page(Browser):
+    def until(self, expression, what):
+        last = time.monotonic() + PATIENCE
+        while not self.value(expression):
+            if time.monotonic() > last:
+                check(False, f"{what}: not {expression}; {self.said} {self.value('JSON.stringify(latest)')}")
+            time.sleep(0.05)
+
+    def press(self, label):
+        found = self.value(f"[...document.querySelectorAll('button')].filter(b => b.ariaLabel === '{label}').length")
+        check(found == 1, f"{found} buttons {label!r}")
+        self.value(f"[...document.querySelectorAll('button')].find(b => b.ariaLabel === '{label}').click()")
+
+    def type(self, field, form, text):
+        self.value(f"at('{field}').value = '{text}'; at('{form}').requestSubmit()")
+
+    def look(self, width, scheme):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+
+
+def lit(text):
+    return f"[...{MOTOR_1}.querySelectorAll('.lamp.lit')].some(l => l.textContent === '{text}')"
+
+
+def pixels(kind):
+    return f"{MOTOR_1}.querySelector('canvas.{kind}').toDataURL()"
+
+
+def settled(page):
+    """Two frames later, so that what was asked for is drawn."""
+    page.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def check_looks(page, folder):
+    backs = set()
+    for width, scheme in LOOKS:
+        page.look(width, scheme)
+        page.value("new Promise(done => setTimeout(done, 200))")
+        settled(page)
+        wide = page.value("document.documentElement.scrollWidth")
+        check(wide <= width, f"{width} wide, {scheme}: the page is {wide} wide")
+        parts = page.value("[...document.querySelectorAll('section')].every(s => s.clientWidth > 200)")
+        check(parts, f"{width} wide, {scheme}: a section is lost")
+        small = page.value("[...document.querySelectorAll('canvas')].filter(c => c.clientWidth < 60).length")
+        check(small == 0, f"{width} wide: {small} plots of no width")
+        backs.add(page.value("getComputedStyle(document.body).backgroundColor"))
+        if folder:
+            page.picture(pathlib.Path(folder) / f"page-{width}-{scheme}.png")
+    check(len(backs) == 2, f"light and dark: {backs}")
+
+
+def page_in_browser():
+    with tempfile.TemporaryDirectory() as folder:
+        plant = pathlib.Path(folder) / "limits.toml"
+        plant.write_text(PLANT)
+        with served_page("--plant", str(plant), "--load", "dac8") as server, Page() as page:
+            page.look(1440, "light")
+            page.show(server.address)
+            page.until(f"{MOTOR_1} && at('link').textContent === 'connected'", "the page is connected")
+            check(page.value("document.querySelectorAll('.motor').length") == 8, "eight motors")
+            check(page.value(f"{MOTOR_1}.querySelector('.name span').textContent") == "killed", "killed at first")
+            check(not page.value(lit("+LIM")), "no limit yet")
+            # The terminal answers, keeps what was typed, and shows a refusal.
+            page.type("line", "say", "ver")
+            page.until("at('said').textContent.includes('1.947')", "the terminal's answer")
+            page.type("line", "say", "frob")
+            page.until("at('said').querySelector('.refused')?.textContent === 'ERR003'", "a refusal")
+            page.value("at('line').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}));"
+                       "at('line').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}))")
+            check(page.value("at('line').value") == "ver", "the history of the terminal")
+            page.value("at('line').value = ''")
+            for item in ("host.breq", "P1"):
+                page.type("item", "add", item)
+            page.type("line", "say", "P1=12.5")
+            page.until("[...document.querySelectorAll('#watched tr')].map(r => r.cells[1].textContent + ' ' + "
+                       "r.cells[2].textContent).join() === '0 memory,12.5 port'", "the watch list")
+            # A button moves the motor, the plots move with it.
+            page.press("#1 stop, close the loop")
+            page.until(f"{MOTOR_1}.querySelector('.name span').textContent === 'in position'", "it is closed")
+            set_bits = "[...document.querySelectorAll('#status li.set')].map(l => l.textContent)"
+            page.until("at('status-of').value === 'motor 1'", "status words of motor 1")
+            shown = page.value(set_bits)
+            check("19amplifier enabled" in shown and "0in position" in shown and "18open loop" not in shown, str(shown))
+            still = page.value(pixels("position"))
+            page.press("#1 jog positive")
+            page.until(f"parseFloat({MOTOR_1}.querySelector('.plot b').textContent) > 500", "the motor moves")
+            settled(page)
+            check(page.value(pixels("position")) != still, "the plot of the position stands")
+            moving = page.value(pixels("velocity"))
+            # It runs into its end switch.
+            page.until(lit("+LIM"), "the lamp of the limit")
+            check(not page.value(lit("\N{MINUS SIGN}LIM")), "the other one")
+            page.until(f"{MOTOR_1}.querySelector('.name span').textContent !== 'moves'", "it stops there")
+            check(page.value(pixels("velocity")) != moving, "the plot of the velocity stands")
+            stopped = page.value(set_bits)
+            check("21in the positive limit" in stopped and "11stopped on a limit" in stopped, str(stopped))
+            with server.client() as client:
+                refused = client.write_lines(["I17=8", "&2DEFINE ROTARY 200", "OPEN ROTARY"] + ["DWELL10"] * 9 + [
+                    "CLOSE", "OPEN PROG 5 CLEAR", "LINEAR INC TA100 TS50 TM900", "WHILE(1<2)", "X-2 Y3 Z1",
+                    "X2 Y-3 Z-1", "ENDWHILE", "CLOSE", "&1A", "#1J-"])
+                check(refused is None, f"line and error {refused}")
+                page.until("!" + lit("+LIM"), "it leaves the switch")
+                page.press("&1 abort")
+                page.until(f"{MOTOR_1}.querySelector('.name span').textContent === 'in position'", "it stands")
+                client.command("&1B5R")
+                page.until("document.querySelector('[data-system=\"1\"] code').textContent.includes('X')", "the line")
+                page.until("document.querySelector('[data-system=\"2\"] .lamp.lit.warn') !== null",
+                           "Rotary Buffer Full")
+                page.value("new Promise(done => setTimeout(done, 4000))" if "BRICK_PAGE_PNG" in os.environ else "0")
+                check_looks(page, os.environ.get("BRICK_PAGE_PNG"))
+            check(not page.said, f"the page complains: {page.said}")
+            check(all(u.startswith((server.address.split("/?")[0], "data:")) for u in page.asked) and
+                  len(page.asked) < 4, f"asks: {page.asked}")
+
+
+def page_read_only_in_browser():
+    with served_page("--free", "--page-read-only") as server, Page() as page:
+        page.show(server.address)
+        page.until("document.querySelectorAll('.motor').length === 8", "motors")
+        check(page.value("document.querySelectorAll('.keys, #terminal, #said').length") == 0, "buttons or a terminal")
+        page.type("item", "add", "host.breq")
+        page.until("document.querySelector('#watched td:nth-child(2)').textContent === '1'", "the watch list")
+        check(not page.said, f"the page complains: {page.said}")
+
+
+if __name__ == "__main__":
+    globals()[command.CASE]()

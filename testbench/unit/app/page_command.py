@@ -1,0 +1,377 @@
+"""The page of `brick serve --page`, spoken to by hand: what it shows is what the controller answers, it disturbs
+nothing, and strangers do not get it.
+
+usage: page_command.py BRICK CASE; each CASE is one test.
+"""
+import contextlib
+import pathlib
+import random
+import re
+import struct
+import tempfile
+import time
+
+import command
+from command import check
+from page_client import ServedPage, head, status_of
+from served import PATIENCE, Served, packet
+
+SPEC = command.REPOSITORY / "docs/datasheet/firmware.md"
+SITE = command.REPOSITORY / "app" / "page" / "site"
+
+
+@contextlib.contextmanager
+def served_page(*options, **keywords):
+    server = ServedPage(*options, **keywords)
+    try:
+        yield server
+        if server.process.poll() is None:
+            server.end()
+    finally:
+        server.process.kill()
+        server.process.wait()
+        server.process.stdout.close()
+        server.process.stderr.close()
+
+
+def words(text, count):
+    """The status words of an answer, six digits each."""
+    check(len(text) == 6 * count, f"{text!r}: expected {count} words")
+    return [int(text[6 * i:6 * i + 6], 16) for i in range(count)]
+
+
+def page_shows():
+    """Each number of the page is what the controller answers: `?`, `??`, `???`, P, %, PR, LIST PE, I-variables."""
+    lines = ["OPEN PROG 5 CLEAR", "LINEAR ABS TA50 TS20 TM400", "X4 Y-2", "DWELL20000", "CLOSE", "#1J=300 #2J/"]
+    with served_page("--free", "--plant", "dac8", "--load", "dac8") as server, server.client() as client:
+        check(client.write_lines(lines) is None, "lines")
+        client.write_lines(["#3K", "I16=3", "I17=7", "&2DEFINE ROTARY 200", "&2OPEN ROTARY"] +
+                           [f"&2DWELL{n}" for n in range(1, 10)] + ["CLOSE"])
+        client.values("&1A")
+        while not int(client.values("&1??")[0], 16) >> 24 + 17 & 1:
+            pass
+        client.values("&1B5R")
+        while not int(client.values("#1?")[0], 16) >> 24 + 15 & 1:  # dwells: nothing moves any more
+            pass
+        client.values("&1%50")  # it goes there at Isx94
+        while client.values("&1%") != ["50"]:
+            pass
+        wanted = {motor: words(client.values(f"#{motor}?")[0], 2) for motor in range(1, 9)}
+        systems = {cs: words(client.values(f"&{cs}??")[0], 3) for cs in (1, 2)}
+        everything = words(client.values("???")[0], 2)
+        places = {motor: [float(client.values(f"#{motor}{what}")[0]) for what in "PF"] for motor in (1, 2)}
+        executing, line = client.values("&1PE")[0], client.values("LIST PE")[0]
+        feed, lines_left = float(client.values("%")[0]), int(client.values("&2PR")[0])
+        ring_line, sizes = client.values("LIST PC")[0], client.values("I16 I17 I19 I10 I52 I40")
+        client.values("&1")
+        page = server.open()
+        about = page.receive()
+        check(about["kind"] == "about" and about["board"] == "geobrick-lv-8" and not about["read_only"], str(about))
+        page.send({"kind": "watch", "items": ["host.breq", "X:$0", "frob", "motor1.actual"]})
+        state = page.state(lambda s: len(s["watch"]) == 4, "watch list")
+        page.sock.close()
+        motors = {m["number"]: m for m in state["motors"]}
+        check(sorted(motors) == list(range(1, 9)), f"motors {sorted(motors)}")
+        for motor, status in wanted.items():
+            check(motors[motor]["status"] == status, f"#{motor}?: page {motors[motor]['status']}, controller {status}")
+        for motor, (place, error) in places.items():
+            shown = motors[motor]
+            check(abs(shown["position"] - place) <= 2 and abs(shown["error"] - error) <= 2,
+                  f"motor {motor}: {shown['position']} {shown['error']}, controller {place} {error}")
+        shown = {s["number"]: s for s in state["systems"]}
+        for cs, status in systems.items():
+            check(shown[cs]["status"] == status, f"&{cs}??: page {shown[cs]['status']}, controller {status}")
+        check(state["global"] == everything, f"???: {state['global']}, controller {everything}")
+        check(shown[1]["line"]["at"] == executing, f"PE: {shown[1]['line']}, controller {executing}")
+        check(line.endswith(":" + shown[1]["line"]["text"]), f"LIST PE: {shown[1]['line']}, controller {line}")
+        check(shown[1]["feed"] == feed == 50, f"%: {shown[1]['feed']}, controller {feed}")
+        check(shown[2]["lines"] == lines_left == 9 and shown[2]["words"] + shown[2]["room"] in (199, 200),
+              f"{shown[2]}, PR {lines_left}")
+        check(ring_line.endswith(":" + shown[2]["line"]["text"]), f"LIST PC: {shown[2]['line']}, {ring_line}")
+        request, clocks = state["request"], state["clocks"]
+        check([str(n) for n in (request["i16"], request["i17"], clocks["i19"], clocks["i10"], clocks["i52"],
+                                state["watchdog"]["reload"])] == sizes[:5] + [sizes[5] if sizes[5] != "0" else "4095"],
+              f"{request} {clocks} {state['watchdog']}: {sizes}")
+        check(request["selected"] == 1 and request["breq"] == state["watch"]["host.breq"] == 1, str(request))
+        # The factory's clocks (firmware:1, host-bus): 9.03 and 2.26 kHz, CPU clock of I52.
+        check(abs(clocks["phase_khz"] - 9.0346) < 0.01 and abs(clocks["servo_khz"] - 8388608 / 3713991) < 0.001,
+              str(clocks))
+        check(clocks["source"] == clocks["i19"] == 7007, str(clocks))
+        check(abs(clocks["cpu_mhz"] - 117.9648 * (clocks["i52"] + 1) / 12) < 0.01, str(clocks))
+        tasks = state["tasks"]
+        check(0 < tasks["phase"]["load"] < tasks["servo"]["load"] < 1 and 0 < tasks["asleep"] < 1, str(tasks))
+        check(0 < state["watchdog"]["lowest"] <= state["watchdog"]["count"] <= 4095, str(state["watchdog"]))
+        check("no such signal" in state["watch"]["frob"], state["watch"]["frob"])
+        check(abs(state["watch"]["motor1.actual"] - motors[1]["position"]) <= 2, str(state["watch"]))
+
+
+def page_full():
+    """The four views of a rotary buffer that fills: ??, PR, BREQ, IR1 of the interrupt controller."""
+    with served_page("--free") as server, server.client() as client, server.open() as page:
+        client.write_lines(["I16=3", "I17=5", "&1DEFINE ROTARY 200", "OPEN ROTARY"])
+        for count in range(1, 8):
+            client.command(f"DWELL{count}")
+            state = page.state(lambda s, n=count: s["systems"][0]["lines"] == n, f"PR {count}")
+            full = state["systems"][0]["status"][1] >> 16 & 1
+            check(full == (count >= 5), f"{count} lines: Full {full}, I17 is 5")
+            levels = state["request"]["sig"] >> 1 & 1
+            check(state["request"]["breq"] == levels == 1 - full, f"{count} lines: {state['request']}")
+
+
+def status_names():
+    """Each bit of the data sheet's tables of status words has a name on the page, and no other."""
+    text = SPEC.read_text()
+    site = (SITE / "status.js").read_text()
+    tables = re.split(r"\n    (?=\[)", site)[1:]
+    check(len(tables) == 7, f"{len(tables)} tables")
+    # The name that a word of the data sheet's row has on the page: numbers by hand, from firmware:5.2 to firmware:5.8.
+    wanted = [
+        {23: "activated", 22: "negative limit", 21: "positive limit", 19: "amplifier enabled", 18: "open loop",
+         17: "known length", 15: "dwell", 13: "velocity zero", 12: "abort", 10: "trigger", 6: "phased"},
+        {15: "assigned", 14: "amplifier enabled", 13: "servo task", 12: "desired position limit",
+         11: "stopped on a limit", 10: "home complete", 9: "searched", 8: "missing", 7: "trigger", 6: "integrated",
+         5: "overload", 4: "backlash", 3: "amplifier fault", 2: "fatal", 1: "warning", 0: "in position"},
+        {5: "vector", 4: "continuous", 3: "time", 2: "blended", 1: "single step", 0: "runs"},
+        {23: "lookahead", 22: "run-time error", 20: "amplifier fault", 19: "fatal", 18: "warning", 17: "in position",
+         16: "Rotary Buffer Full", 14: "end of the block", 12: "dwell", 7: "segments"},
+        {23: "written over", 22: "backwards", 21: "oldest", 20: "wait", 19: "lost", 6: "sharp corner", 5: "pause",
+         3: "radius", 2: "refused", 1: "limit", 0: "matching"},
+        {22: "real-time", 20: "servo task", 19: "gathered", 14: "compensation", 10: "damaged", 9: "late", 7: "ICs",
+         3: "no phase clock"},
+        {23: "Ultralite", 20: "binary rotary", 19: "motion buffer", 18: "rotary buffers open", 16: "UMAC",
+         15: "forward", 14: "inverse", 11: "Fixed Buffer Full"}]
+    for section, table, names in zip(range(2, 9), tables, wanted, strict=True):
+        check(f"### 5.{section} " in text, f"firmware:5.{section}")
+        for number, name in names.items():
+            found = re.search(rf"\[{number}, {number}, \"([^\"]*)\"", table)
+            check(found and name in found[1],
+                  f"firmware:5.{section}/{number}: {found and found[1]!r}, expected {name!r}")
+
+
+def page_disturbs_nothing():
+    """With --free and one scripted client replies and waveform are the same with the page open and without, byte for
+    byte, whatever the page shows and watches."""
+    script = ["#1J/", "#1J+", *(f"#1PVF#2P#{n % 8 + 1}?" for n in range(40)), "#1J/", "&1??", "???",
+              *("#1?" for _ in range(20)), "frob", "I100..110"]
+    def play(folder, with_page):
+        wave = pathlib.Path(folder) / f"{with_page}.vcd"
+        options = ("--free", "--plant", "dac8", "--load", "dac8", "--wave", str(wave), "--trace",
+                   "host.*,servo_ic0.ch1.*")
+        server = ServedPage(*options) if with_page else Served(*options)
+        answers = []
+        with contextlib.ExitStack() as stack:
+            if with_page:
+                page = stack.enter_context(server.open())
+                page.send({"kind": "watch", "items": ["X:$0", "host.breq", "D:$88", "plant.axis1.position"]})
+            with server.socket() as sock:
+                for line in script:
+                    sock.sendall(packet(0xBF, line.encode()))
+                    answers.append(sock.recv(4000))
+                    if with_page:
+                        check(page.state()["motors"], "motors")
+        server.end()
+        return answers, wave.read_bytes()
+    with tempfile.TemporaryDirectory() as folder:
+        alone, watched = play(folder, False), play(folder, True)
+        for line, one, other in zip(script, alone[0], watched[0], strict=True):
+            check(one == other, f"{line}: {one!r} without, {other!r} with the page")
+        check(len(alone[1]) > 10000, "a waveform with something in it")
+        # How far the controller goes on behind the last answer is when the signal comes that ends it.
+        end = min(len(alone[1]), len(watched[1]))
+        end = max(wave[1][:end].rindex(b"\n#") for wave in (alone, watched) if len(wave[1]) == end)
+        check(alone[1][:end] == watched[1][:end], "the waveforms differ")
+
+
+def page_commands():
+    """Buttons and terminal are a client: what is asked is answered, refused, long, and in order."""
+    with served_page("--free", "--plant", "dac8", "--load", "dac8") as server, server.open() as page:
+        check(page.command("ver")["lines"] == ["1.947"], "ver")
+        answer = page.command("frob")
+        check(answer["refused"] and answer["lines"] == ["ERR003"], str(answer))
+        check(page.command("P1..300=7")["lines"] == [] and page.command("P1..300")["lines"] == ["7"] * 300, "300 lines")
+        for number in range(30):
+            page.send({"kind": "command", "id": 100 + number, "line": f"P({number}*2)={number} P{number * 2}"})
+        for number in range(30):
+            answer = page.until(lambda m: m["kind"] == "answer", "answer")
+            check((answer["id"], answer["lines"]) == (100 + number, [str(number)]), str(answer))
+        check(page.command("#1J/")["lines"] == [], "J/")
+        page.command("#1J+")
+        before = page.state()["motors"][0]["position"]
+        last = time.monotonic() + PATIENCE
+        while float(page.command("#1P")["lines"][0]) < 100:
+            check(time.monotonic() < last, "J+ does not move it")
+        page.state(lambda s: s["motors"][0]["position"] > before + 50, "motion")
+        with server.open() as other, server.client() as client:
+            other.command("P9=81")
+            check(client.values("P9") == ["81"] and page.command("P9")["lines"] == ["81"], "clients see each other")
+
+
+def page_read_only():
+    """--page-read-only: no command goes through, whatever is sent; all is shown."""
+    with served_page("--free", "--page-read-only") as server, server.client() as client, server.open() as page:
+        check(page.receive()["read_only"] is True, "it says so")
+        answer = page.command("P5=55")
+        check(answer["kind"] == "mistake" and "read only" in answer["text"], str(answer))
+        check(client.values("P5") == ["0"], "the controller has got it")
+        page.send({"kind": "watch", "items": ["X:$0"]})
+        check(page.state(lambda s: "X:$0" in s["watch"], "watch list")["motors"], "motors")
+        check('data-mode="read-only"' in server.get()[1], "the page")
+
+
+def page_strangers():
+    """Host, Origin and token of every request; nothing of the page is given away, and nothing is done."""
+    with served_page("--free") as server, server.client() as client:
+        here, port = server.host, server.page_port
+        status, body = server.get()
+        check(status == 200 and "<title>brick</title>" in body, f"{status}")
+        check(server.get(Origin=f"http://{here}")[0] == 200, "our own origin")
+        check(server.get(Host=f"localhost:{port}")[0] == 200, "localhost")
+        wrong = "0" * 32
+        for what, path, fields in (
+                ("no token", "/", {}), ("a wrong token", f"/?token={wrong}", {}),
+                ("half a token", f"/?token={server.token[:16]}", {}),
+                ("a token and more", f"/?token={server.token}0", {}), ("another field", f"/?t={server.token}", {}),
+                ("another host", None, {"Host": f"evil.example:{port}"}),
+                ("another port", None, {"Host": "127.0.0.1:1"}),
+                ("no host", None, {"Host": None}), ("two hosts", None, {"Host": [here, here]}),
+                ("an address that is not ours", None, {"Host": f"10.0.0.1:{port}"}),
+                ("another origin", None, {"Origin": "http://evil.example"}),
+                ("an origin of another port", None, {"Origin": "http://127.0.0.1:1"}),
+                ("no origin at all", None, {"Origin": "null"}), ("https", None, {"Origin": f"https://{here}"}),
+                ("two origins", None, {"Origin": [f"http://{here}", f"http://{here}"]})):
+            status, body = server.get(path, **fields)
+            check(status in (400, 403), f"{what}: {status}")
+            check("<script" not in body and server.token not in body, f"{what}: {body}")
+            target = path and path.replace("/?", "/socket?").replace("/", "/socket", path == "/")
+            with server.open(path=target, **fields) as page:
+                check(page.refused in (400, 403), f"websocket, {what}: {page.refused}")
+        with server.open(Origin=None) as page:
+            check(page.refused == 403, f"websocket without an origin: {page.refused}")
+        for path, method, wanted in ((f"/other?token={server.token}", "GET", 404),
+                                     (f"/socket?token={server.token}", "GET", 404),
+                                     (None, "POST", 405), (None, "DELETE", 405)):
+            check(server.get(path, method)[0] == wanted, f"{method} {path}")
+        check(client.values("ver") == ["1.947"], "the controller")
+    with served_page("--free") as one, served_page("--free") as other:
+        check(one.token != other.token, "the same token twice")
+
+
+def page_header():
+    """The page loads nothing from anywhere, is kept by nobody, and stands in no frame."""
+    with served_page("--free") as server:
+        answer = server.raw(head(f"/?token={server.token}", "GET", {"Host": server.host})).decode()
+        for line in ("Cache-Control: no-store", "Referrer-Policy: no-referrer", "X-Content-Type-Options: nosniff",
+                     "default-src 'none'", "frame-ancestors 'none'"):
+            check(line in answer, line)
+        body = answer.partition("\r\n\r\n")[2]
+        check(not re.search(r"(?:src|href)=\"(?!data:)", body) and "@" not in re.sub(r"@media", "", body),
+              "it asks for more than itself")
+
+
+def page_beyond_loopback():
+    """A page that others reach says what that means; its own machine is named in the printed address."""
+    with served_page("--free", page="0.0.0.0:0") as server:
+        check(server.get()[0] == 200 and server.get(Host=f"10.1.2.3:{server.page_port}")[0] == 200, "by address")
+        check(server.get(Host=f"evil.example:{server.page_port}")[0] == 403, "by a stranger's name")
+        said = server.end()
+        check("encrypted" in said and "no password" in said, said)
+    with served_page("--free", page="0") as server:
+        check(server.host.startswith("127.0.0.1:"), server.host)
+        said = server.end()
+        check("encrypted" not in said, said)
+
+
+def page_bad_input():
+    for options, wanted in ((("--page", "frob"), "HOST:PORT"), (("--page", "127.0.0.1:99999"), "HOST:PORT"),
+                            (("--page", "192.0.2.1:0"), "free port"), (("--page-read-only",), "--page")):
+        r = command.brick("serve", "--listen", "127.0.0.1:0", *options)
+        check(r.returncode == 2 and wanted in r.stderr and r.stderr.count("\n") == 1, f"{options}: {r.stderr}")
+
+
+def page_hostile():
+    """Huge headers, noise, half requests, frames too long, broken JSON, clients that stall: others are served."""
+    chance = random.Random(1)
+    with served_page("--free") as server, server.client() as client, server.open() as good:
+        def still_good():
+            check(client.values("ver") == ["1.947"] and good.command("P7")["lines"] == ["0"], "a good client")
+        request = head(f"/?token={server.token}", "GET", {"Host": server.host})
+        check(status_of(server.raw(request[:-2] + b"X: " + b"a" * 20000 + b"\r\n\r\n")) in (431, None), "a huge header")
+        check(status_of(server.raw(b"\x00\x01frob\r\n\r\n")) == 400, "noise")
+        still_good()
+        with contextlib.suppress(ConnectionError):
+            for _ in range(20):
+                server.raw(bytes(chance.randrange(256) for _ in range(3000)) + b"\r\n\r\n")
+        still_good()
+        halves = [server.connect() for _ in range(100)]  # more than there is room for
+        for at, half in enumerate(halves):
+            with contextlib.suppress(ConnectionError):
+                half.sendall(request[:at % (len(request) - 1)])
+        still_good()
+        check(server.get()[0] == 200, "the page while half requests wait")
+        for half in halves:
+            half.close()
+        for data, opcode in ((b"x" * 5000, 1), (b"x" * 100000, 1), (b"\xff\xfe", 1)):
+            with server.open() as page, contextlib.suppress(ConnectionError):
+                page.frame(data, opcode)
+                while page.receive() is not None:
+                    pass
+            still_good()
+        with server.open() as page:
+            page.sock.sendall(b"\x81\x05hello")  # not masked
+            with contextlib.suppress(ConnectionError):
+                while page.receive() is not None:
+                    pass
+        with server.open() as page:
+            page.sock.sendall(bytes([0x81, 0xFF]) + struct.pack(">Q", 1 << 62) + b"mask")  # of a size that is none
+            with contextlib.suppress(ConnectionError):
+                while page.receive() is not None:
+                    pass
+        still_good()
+        for text in ("", "{", "[]", "null", "7", "[" * 4000, '{"kind":7}', '{"kind":"frob"}', '{"kind":"command"}',
+                     '{"kind":"command","id":-1,"line":"P7=9"}', '{"kind":"command","id":1,"line":"P7=9\\rP7=9"}',
+                     '{"kind":"command","id":1,"line":7}', '{"kind":"command","id":1,"line":""}',
+                     '{"kind":"command","id":1e30,"line":"P7=9"}', '{"kind":"watch"}', '{"kind":"watch","items":[7]}',
+                     '{"kind":"watch","items":["a b"]}', '{"kind":"watch","items":{}}', '{"kind":"command","id":1,'
+                     f'"line":"{"P" * 256}"' + "}"):
+            good.frame(text.encode())
+            mistake = good.until(lambda m: m["kind"] != "state" and m["kind"] != "about", f"answer to {text[:40]}")
+            check(mistake["kind"] == "mistake", f"{text[:40]}: {mistake}")
+        still_good()
+        crowd = [server.open() for _ in range(20)]
+        refused = [one.refused for one in crowd]
+        check(refused.count(503) == 5, f"{refused}: expected 16 with the good one")
+        for one in crowd:
+            one.sock.close()
+        still_good()
+
+
+def page_stalled():
+    """Clients that take nothing: the others have fresh states, and the memory of the process stays where it is."""
+    def memory(server):
+        status = pathlib.Path(f"/proc/{server.process.pid}/status").read_text(encoding="ascii")
+        return int(status.partition("VmRSS:")[2].split()[0])
+    with served_page("--plant", "dac8", "--load", "dac8") as server, server.open() as good:
+        stalled = [server.open() for _ in range(4)]
+        for one in stalled:
+            for number in range(40):  # more than are taken from one client at a time
+                one.send({"kind": "command", "id": number, "line": "P1..200"})
+        good.state()
+        def see(count):
+            first = last = good.state()["ms"]
+            for _ in range(count):
+                now = good.state()["ms"]
+                check(now > last, "an old state")
+                last = now
+            return last - first
+        see(20)
+        before = memory(server)
+        see(150)
+        grown = memory(server) - before
+        check(grown < 4096, f"{grown} KiB more for clients that take nothing")
+        check(good.command("ver")["lines"] == ["1.947"], "answers")
+        for one in stalled:
+            one.sock.close()
+
+
+if __name__ == "__main__":
+    globals()[command.CASE]()
