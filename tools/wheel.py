@@ -8,6 +8,7 @@ the fixtures.
 """
 
 import argparse
+import os
 import pathlib
 import shutil
 import subprocess
@@ -58,7 +59,7 @@ def make(build, folder):
         f"cmake.define.BRICK_BUILD={build}", ROOT)
     (plain,) = (folder / "plain").glob("*.whl")
     # auditwheel takes patchelf from the path.
-    path = {"PATH": f"{programs}:/usr/bin:/bin"}
+    path = {**os.environ, "PATH": f"{programs}:/usr/bin:/bin"}
     run(programs / "auditwheel", "repair", "--plat", PLATFORM, "--only-plat", "--wheel-dir", folder, plain, env=path)
     (wheel,) = folder.glob("*.whl")
     return wheel
