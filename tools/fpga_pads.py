@@ -151,15 +151,16 @@ def rows(found):
     """The rows of the data sheet that pads decide, the one with the least to spare first."""
     a_in = worst(found, PORT_A_IN, "in") + PAD_IN + SKEW
     isa_in = worst(found, ISA_IN, "in") + PAD_IN + SKEW
+    ta = worst(found, TA, "out", "ram")
     out = {name: worst(found, name, "out", "enable") + PAD_OUT + SKEW
            for name in (D, "isa_sd_io", "isa_iochrdy_io", MEMCS16)}
     table = [(PORT_A_IN, Row("host-bus:2.6", "pads of Port A to a flip-flop", a_in, TICK)),
              (D, Row("host-bus:2.6", "clock to D, of registers", out[D], 10.0)),
              (D, Row("host-bus:2.6/5", "/RD to the end of D, without a clock",
                      worst(found, D, "off") + PAD_IN + PAD_OUT, TICK)),
-             (TA, Row("host-bus:2.6", "clock to /TA", worst(found, TA, "out", "ram") + PAD_OUT + SKEW, 10.0)),
+             (TA, Row("host-bus:2.6", "clock to /TA", ta + PAD_OUT + SKEW, 10.0)),
              (TA, Row("host-bus:6.9/8", "D of the RAM behind /TA, which comes a clock later",
-                      worst(found, D, "ram") - worst(found, TA, "out", "ram"), BEHIND_TA)),
+                      worst(found, D, "ram") - ta, BEHIND_TA)),
              (CLOCKS, Row("servo-ic:5.1/11", "PHASE, SERVO from chip to chip, without the wire",
                           worst(found, CLOCKS, "out") + PAD_OUT + SKEW + worst(found, CLOCKS, "in") + PAD_IN, TICK)),
              (CLOCKS, Row("servo-ic:5.1/8", "clock to the enable of PHASE, SERVO, which are high then",
