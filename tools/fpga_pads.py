@@ -19,6 +19,7 @@ PAD_IN, PAD_OUT, SKEW = 0.70, 3.50, 0.42  # tSUPLL, tCOPLL, tSKEW_PRI
 # The RAM has its word a clock before /TA falls; the CPU samples D 0.25 TC - 3 ns behind /TA (rows 105 and 118 of
 # host-bus:2.2), which is before it at the fastest clock that pads are allowed for, I52 = 15.
 BEHIND_TA = TICK + 0.25 * 1000 / (CPU * 16) - 3.0
+TO_PAD = 10.0  # D and /TA, from their clock
 RAM, STROBES = "u_dpram.", "u_bus_strobes."  # cells
 # Which pads must keep a time, and the rows of host-bus they are for: to a flip-flop, or from one.
 PORT_A_IN, ISA_IN = r"pa_.*_n?io?", r"isa_(?!sd_io|resetdrv).*_n?i"
@@ -155,10 +156,10 @@ def rows(found):
     out = {name: worst(found, name, "out", "enable") + PAD_OUT + SKEW
            for name in (D, "isa_sd_io", "isa_iochrdy_io", MEMCS16)}
     table = [(PORT_A_IN, Row("host-bus:2.6", "pads of Port A to a flip-flop", a_in, TICK)),
-             (D, Row("host-bus:2.6", "clock to D, of registers", out[D], 10.0)),
+             (D, Row("host-bus:2.6", "clock to D, of registers", out[D], TO_PAD)),
              (D, Row("host-bus:2.6/5", "/RD to the end of D, without a clock",
                      worst(found, D, "off") + PAD_IN + PAD_OUT, TICK)),
-             (TA, Row("host-bus:2.6", "clock to /TA", ta + PAD_OUT + SKEW, 10.0)),
+             (TA, Row("host-bus:2.6", "clock to /TA", ta + PAD_OUT + SKEW, TO_PAD)),
              (TA, Row("host-bus:6.9/8", "D of the RAM behind /TA, which comes a clock later",
                       worst(found, D, "ram") - ta, BEHIND_TA)),
              (CLOCKS, Row("servo-ic:5.1/11", "PHASE, SERVO from chip to chip, without the wire",
