@@ -6,10 +6,10 @@ namespace brick {
 
 namespace {
 
-enum class Kind { kUnknown, kBare, kWithData };
+enum class RequestKind { kUnknown, kBare, kWithData };
 
 // By the request, whatever its type says: clients mark a download as an upload.
-Kind kind(std::uint8_t type, std::uint8_t request) {
+RequestKind kind(std::uint8_t type, std::uint8_t request) {
   switch (request) {
     case EthernetPacket::kSendLine:
     case EthernetPacket::kSetMemory:
@@ -18,9 +18,9 @@ Kind kind(std::uint8_t type, std::uint8_t request) {
     case EthernetPacket::kGetResponse:
     case EthernetPacket::kWriteBuffer:
     case EthernetPacket::kDownloadFirmware:
-      return Kind::kWithData;
+      return RequestKind::kWithData;
     case EthernetPacket::kAddress:
-      return type == EthernetPacket::kDownload ? Kind::kWithData : Kind::kBare;
+      return type == EthernetPacket::kDownload ? RequestKind::kWithData : RequestKind::kBare;
     case EthernetPacket::kGetLine:
     case EthernetPacket::kFlush:
     case EthernetPacket::kGetMemory:
@@ -34,9 +34,9 @@ Kind kind(std::uint8_t type, std::uint8_t request) {
     case EthernetPacket::kDate:
     case EthernetPacket::kTime:
     case EthernetPacket::kVersion:
-      return Kind::kBare;
+      return RequestKind::kBare;
     default:
-      return Kind::kUnknown;
+      return RequestKind::kUnknown;
   }
 }
 
@@ -71,9 +71,9 @@ std::optional<EthernetPacket> PacketReader::next() {
   const auto byte = [this](std::size_t n) { return static_cast<std::uint8_t>(bytes_[at_ + n]); };
   const auto word = [&](std::size_t n) { return static_cast<std::uint16_t>(byte(n) << 8 | byte(n + 1)); };
   EthernetPacket packet{byte(0), byte(1), word(2), word(4), word(6), ""};
-  const Kind what = kind(packet.type, packet.request);
-  const bool with_data = what == Kind::kWithData;
-  if (what == Kind::kUnknown)
+  const RequestKind what = kind(packet.type, packet.request);
+  const bool with_data = what == RequestKind::kWithData;
+  if (what == RequestKind::kUnknown)
     broken_ = fmt::format("request {:02X} is not known", packet.request);
   else if (with_data && packet.length > EthernetPacket::kMostData)
     broken_ = fmt::format("{} bytes of data; expected {} or fewer", packet.length, EthernetPacket::kMostData);
