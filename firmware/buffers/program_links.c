@@ -23,7 +23,10 @@ enum links program_links_make(const struct fixed_program* program) {
   error_t error = ERR_NONE;
   if (program->linked) return LINKS_MADE;
   program_structure_begin(&structure, links);
-  while (error == ERR_NONE && program_links_line(&structure, program, &error) != 0) {}
+  while (error == ERR_NONE && program_links_line(&structure, program, &error) != 0) {
+    slice_pause();
+    if (fixed_programs_generation() != generation) break;
+  }
   if (fixed_programs_generation() != generation) return LINKS_MOVED;
   if (error != ERR_NONE || structure.depth != 0) return LINKS_BAD;
   fixed_program_set_linked(program);

@@ -91,12 +91,14 @@ bool dpram_motors_servo(void) {
   return period != 0 || foreground.report.is_on;
 }
 
-/* The servo task's set may have begun until the flag was set. */
+/* The servo task's set may have begun until the flag was set. The ready word is that task's then: what the background
+ * had ready is forgotten, not taken back. */
 void dpram_motors_pass(void) {
   const int32_t period = i_integer(I57_DPRAM_MOTORS_ENABLE) != 0 ? i_integer(I50_DPRAM_BACKGROUND_PERIOD) : 0;
   if (period == 0 && !background.report.is_on) return;
   background_writes = true;
   if (foreground.report.is_on && !background.report.writes) {
+    dpram_report_initialize(&background.report);
     background_writes = false;
     return;
   }

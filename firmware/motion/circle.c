@@ -4,10 +4,12 @@
 #include "firmware/kernel/slice.h"
 
 #define PI 3.14159265358979323846
+#define TURN (2.0 * PI)
 #define LEAST_ARC 9.5367431640625e-7 /* 2^-20, of pi, when Isx97 is 0 */
 #define LEAST_RADIUS 1e-9            /* of the distance of the ends: below it the radius is 0 */
 
-enum { DRIFT_STEPS = 16 }; /* even */
+enum { SPIRAL_STEPS = 16, DRIFT_STEPS = 32 }; /* of a turn, even */
+enum { NO_DRIFT = -40, NO_SPIRAL = -10 };     /* 2^that of an arc: less is rounding; lengthens it by 2^-21 at most */
 
 static double product(const double a[CIRCLE_AXES], const double b[CIRCLE_AXES]) {
   double sum = 0.0;
@@ -15,6 +17,12 @@ static double product(const double a[CIRCLE_AXES], const double b[CIRCLE_AXES]) 
     if (a[i] != 0.0 && b[i] != 0.0) sum += a[i] * b[i];
     slice_pause();
   }
+  return sum;
+}
+
+static double plus_product(double sum, double a, double b) {
+  sum += a * b;
+  slice_pause();
   return sum;
 }
 
@@ -29,6 +37,13 @@ static void cross(const double a[CIRCLE_AXES], const double b[CIRCLE_AXES], doub
 static double length(const double a[CIRCLE_AXES]) {
   const double square = product(a, a);
   return square > 0.0 ? math_square_root(square) : 0.0;
+}
+
+static double hypotenuse(double a, double b) {
+  const double square = plus_product(plus_product(0.0, a, a), b, b);
+  const double root = square > 0.0 ? math_square_root(square) : 0.0;
+  slice_pause();
+  return root;
 }
 
 /* from + by * direction */
@@ -115,7 +130,6 @@ enum circle_kind circle_of(const struct circle_line* line, struct circle* c) {
   if ((line->vectors == 0 && !line->by_radius) || !rotation(line, axis)) return CIRCLE_STRAIGHT;
   go(line->end, -1.0, line->start, way);
   const double height = product(way, axis);
-  c->drifts = false;
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
     c->along[i] = height * axis[i];
     chord[i] = way[i] - c->along[i];
@@ -146,46 +160,52 @@ static void velocity(const struct circle* c, double part, double* outward, doubl
   slice_pause();
 }
 
-static double of_arc(const struct circle* c) {
+/* By Simpson's rule, in directions that turn with the arm. `across` and `on`: what goes evenly in the plane, outwards
+ * at the start and a quarter of a turn on. */
+static double of_curve(const struct circle* c, double across, double on) {
+  const bool drifts = across != 0.0 || on != 0.0;
+  const uint32_t turns = c->angle > TURN + LEAST_ARC ? 2u : 1u;
+  const uint32_t steps = turns * (drifts ? DRIFT_STEPS : SPIRAL_STEPS);
+  double sum = 0.0;
+  for (uint32_t i = 0; i <= steps; i++) {
+    const double part = (double)i / (double)steps;
+    slice_pause();
+    const double radius = c->radius + c->growth * part;
+    slice_pause();
+    double outward = c->growth, onward = radius * c->angle;
+    slice_pause();
+    if (drifts) {
+      const double angle = c->angle * part;
+      slice_pause();
+      const double cosine = math_cosine(angle, false), sine = math_sine(angle, false);
+      slice_pause();
+      outward = plus_product(plus_product(outward, across, cosine), on, sine);
+      onward = plus_product(plus_product(onward, on, cosine), -across, sine);
+    }
+    const double speed = hypotenuse(outward, onward);
+    sum = plus_product(sum, speed, i == 0 || i == steps ? 1.0 : (double)(2u + 2u * (i & 1u)));
+  }
+  return sum / (double)(3u * steps);
+}
+
+double circle_length(const struct circle* c, double beside[CIRCLE_AXES]) {
   const double mean = c->radius + c->growth * 0.5;
   slice_pause();
   const double round = mean * c->angle;
   slice_pause();
-  if (c->growth == 0.0) return round;
-  const double square = round * round;
-  slice_pause();
-  const double sum = square + c->growth * c->growth;
-  slice_pause();
-  return math_square_root(sum);
-}
-
-/* By Simpson's rule. */
-static double of_drifting(const struct circle* c, double across, double on) {
-  double sum = 0.0;
-  for (uint32_t i = 0; i <= DRIFT_STEPS; i++) {
-    double outward, onward;
-    velocity(c, (double)i / (double)DRIFT_STEPS, &outward, &onward);
-    outward += across;
-    slice_pause();
-    onward += on;
-    slice_pause();
-    const double square = outward * outward + onward * onward;
-    slice_pause();
-    const double speed = square > 0.0 ? math_square_root(square) : 0.0;
-    slice_pause();
-    sum += i == 0 || i == DRIFT_STEPS ? speed : (double)(2u + 2u * (i & 1u)) * speed;
-    slice_pause();
-  }
-  return sum / (double)(3 * DRIFT_STEPS);
-}
-
-double circle_length(const struct circle* c, double beside[CIRCLE_AXES]) {
+  const double none = math_scale(round, NO_DRIFT);
+  double across = product(c->along, c->first), on = product(c->along, c->second);
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) beside[i] = c->along[i];
-  if (!c->drifts) return of_arc(c);
-  const double across = product(c->along, c->first), on = product(c->along, c->second);
-  go(beside, -across, c->first, beside);
-  go(beside, -on, c->second, beside);
-  return of_drifting(c, across, on);
+  if (math_absolute(across) <= none && math_absolute(on) <= none) {
+    if (math_absolute(c->growth) <= math_scale(round, NO_SPIRAL)) return round;
+    across = on = 0.0;
+  } else {
+    go(beside, -across, c->first, beside);
+    go(beside, -on, c->second, beside);
+  }
+  const double length = of_curve(c, across, on);
+  slice_pause();
+  return length;
 }
 
 double circle_least_radius(const struct circle* c) { return c->growth < 0.0 ? c->radius + c->growth : c->radius; }

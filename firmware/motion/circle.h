@@ -25,17 +25,17 @@ struct circle_line {
 struct circle {
   double centre[CIRCLE_AXES];
   double first[CIRCLE_AXES], second[CIRCLE_AXES]; /* of length 1: to the start, and a quarter of a turn on */
-  double along[CIRCLE_AXES];                      /* what goes evenly: the way out of the plane */
-  bool drifts;                                    /* and one in it, since the arc begins somewhere else */
-  double radius, growth;                          /* at the start; by how much it is larger at the end */
-  double angle;                                   /* radian, above 0 */
+  double along[CIRCLE_AXES]; /* what goes evenly: the way out of the plane; one in it if the arc begins elsewhere */
+  double radius, growth;     /* at the start; by how much it is larger at the end */
+  double angle;              /* radian, above 0 */
 };
 
 enum circle_kind { CIRCLE_ARC, CIRCLE_STRAIGHT, CIRCLE_IMPOSSIBLE };
 
 /* STRAIGHT: neither centre nor radius, or none that the ends determine. */
 enum circle_kind circle_of(const struct circle_line* line, struct circle* circle);
-double circle_length(const struct circle* circle, double beside[CIRCLE_AXES]); /* in its plane; what is beside that */
+/* Of its curve in its plane; and the way out of that. */
+double circle_length(const struct circle* circle, double beside[CIRCLE_AXES]);
 double circle_least_radius(const struct circle* circle);
 /* At the part 0..1 of it; and the direction there, of any length. */
 void circle_at(const struct circle* circle, double part, double position[CIRCLE_AXES]);

@@ -132,7 +132,7 @@ void path_at_end(uint32_t count, struct path_point* point) {
 }
 
 void path_direction(const struct path_move* m, double part, double direction[AXIS_COUNT]) {
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) direction[axis] = m->delta[axis];
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) direction[axis] = m->stands ? 0.0 : m->delta[axis];
   slice_pause();
   if (m->is_arc) circle_direction(&m->circle, part, &direction[AXIS_X]);
 }

@@ -32,6 +32,7 @@ struct path_move {
   bool sharp, dwells;   /* if not: for its corner; Isx82 counts */
   bool is_arc;          /* X, Y, Z go by `circle`, their deltas are those of its ends */
   bool timed;           /* by TM; else by `feedrate` */
+  bool stands;          /* its deltas are what a forward program rounds, no way */
   int64_t time, change; /* Tm; length of the change of velocity at its beginning */
   int64_t acceleration, s_curve;
   struct fixed_divisor by_time;

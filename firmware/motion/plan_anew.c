@@ -10,22 +10,30 @@
 
 enum { SAME_WAY = -20 }; /* 2^that of a move's way: less is what a forward program rounds, no other way */
 
-static double longest_axis(const struct path_move* m) {
-  double longest = 0.0;
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    longest = plan_larger(longest, math_absolute(m->delta[axis]));
+/* Of each waiting move; of one that stands the next before it, or else behind it, that does not: its own is none as
+ * long as it would be nothing beside those at its corners. */
+static double longest[PATH_MOVES];
+
+/* An arc reaches as far as its radius. */
+static double reach_of(const struct path_move* m) {
+  double reach = m->is_arc ? m->circle.radius : 0.0;
+  for (uint32_t axis = 0; axis < AXIS_COUNT && !m->stands; axis++) {
+    reach = plan_larger(reach, math_absolute(m->delta[axis]));
     slice_pause();
   }
-  return longest;
+  return reach;
 }
 
-/* A move without a way has none as long as it would be nothing beside those at its corners. */
-static bool is_another_way(uint32_t cs, uint32_t ahead, double by) {
+static void measure(uint32_t cs) {
   struct path* p = &paths[cs];
-  double longest = longest_axis(path_of(p, ahead));
-  if (longest == 0.0 && ahead != 0) longest = longest_axis(path_of(p, ahead - 1u));
-  if (longest == 0.0 && ahead + 1u < p->count) longest = longest_axis(path_of(p, ahead + 1u));
-  return math_absolute(by) > math_scale(longest, SAME_WAY);
+  for (uint32_t i = 0; i < p->count; i++) {
+    struct path_move* m = path_of(p, i);
+    longest[i] = reach_of(m);
+    m->stands = longest[i] == 0.0;
+    if (m->stands && i != 0) longest[i] = longest[i - 1u];
+  }
+  for (uint32_t i = p->count - 1u; i-- != 0;)
+    if (longest[i] == 0.0) longest[i] = longest[i + 1u];
 }
 
 /* An axis goes the ways that it was to go, up to the first move that takes it to its end all the same: an arc as it is,
@@ -47,11 +55,12 @@ static uint32_t shift_axis(uint32_t cs, uint32_t axis, double shift) {
     if (axis <= AXIS_C) m->end[axis] = system_motors_turn(cs, axis, m->start[axis], m->told[axis]);
     const double by = m->end[axis] - was - shift;
     slice_pause();
-    const bool changes = is_another_way(cs, i, by);
-    if (changes) changed |= 1u << i;
+    if (math_absolute(by) > math_scale(longest[i], SAME_WAY)) {
+      changed |= 1u << i;
+      m->stands = false;
+    }
     slice_pause();
     m->delta[axis] += by;
-    if (turns && changes) m->circle.drifts = true;
     if (turns) m->circle.along[axis - AXIS_X] += by;
     shift = m->end[axis] - was;
     slice_pause();
@@ -89,6 +98,7 @@ static void judge_corner(uint32_t cs, uint32_t ahead) {
 void plan_anew(uint32_t cs, double position[AXIS_COUNT]) {
   struct path* p = &paths[cs];
   uint32_t changed = 0;
+  measure(cs);
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     changed |= shift_axis(cs, axis, position[axis] - path_of(p, 0)->start[axis]);
     position[axis] = path_of(p, p->count - 1u)->end[axis];

@@ -51,7 +51,15 @@ static void arc_ways(const struct path_move* m, double way[AXIS_COUNT]) {
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
     const uint32_t axis = AXIS_X + i, axes = m->feedrate.axes;
     if (!counted && ((axes >> axis & 1u) != 0 || ((axes & AXIS_XYZ) == 0 && i == 0))) {
-      way[axis] = way[axis] == 0.0 ? length : math_square_root(length * length + way[axis] * way[axis]);
+      if (way[axis] != 0.0) {
+        const double of_arc = length * length;
+        slice_pause();
+        const double square = of_arc + way[axis] * way[axis];
+        slice_pause();
+        way[axis] = math_square_root(square);
+      } else {
+        way[axis] = length;
+      }
       counted = true;
     }
     slice_pause();
@@ -98,6 +106,7 @@ static void push(uint32_t cs, const struct path_move* m) {
   struct path_move* in = path_of(p, p->count);
   *in = *m;
   in->joins = blends && s->may_join;
+  in->stands = false;
   in->line = (struct path_line){s->line.places[0], s->line.places[s->line.depth], s->line.depth != 0};
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     in->start[axis] = s->position[axis];

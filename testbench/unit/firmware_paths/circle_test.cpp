@@ -1,5 +1,6 @@
 // Geometry of CIRCLE1 and CIRCLE2 (motion:7.2) against arithmetic of the test: turned with rotation matrices, not with
 // the planner's vectors.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -189,6 +190,40 @@ TEST(Circle, AHelixAndOtherPlanes) {
   expect_at(c, 0.5,
             {a.x * std::cos(half) + b.x * std::sin(half), a.y * std::cos(half) + b.y * std::sin(half),
              a.z * std::cos(half) + b.z * std::sin(half)});
+}
+
+// motion:7.2/8, motion:7.1/8: of spirals within 10^-5, of what drifts too within 0.2 %. As polygons of 50,000 sides.
+TEST(Circle, LengthsOfSpiralsAndOfWhatDrifts) {
+  const struct {
+    double radius, growth, turns, x, y, tolerance;
+  } cases[] = {{.1, 2, .25, 0, 0, 1e-5},  {5, -4.9, .25, 0, 0, 1e-5}, {1, 15, .97, 0, 0, 1e-5},
+               {1, 15, 1.97, 0, 0, 1e-5}, {1, 0, 1, 4, 0, 1e-5},      {1, 0, 1, 0, -4, 1e-5},
+               {1, 0, 1.95, 12, 2, 2e-3}, {1, -.8, 1.6, 9, 3, 2e-3},  {1, 0, .3, 1e-7, 0, 1e-9}};
+  for (const auto& one : cases) {
+    SCOPED_TRACE(std::to_string(one.growth) + " " + std::to_string(one.turns) + " " + std::to_string(one.x));
+    const double angle = 2 * kPi * one.turns, end = one.radius + one.growth;
+    circle_line line =
+        with_centre(line_of({one.radius, 0, 0}, {end * std::cos(angle), -end * std::sin(angle), 7}), -one.radius, 0);
+    if (one.turns > 1) line.least = 2;
+    circle c;
+    ASSERT_EQ(circle_of(&line, &c), CIRCLE_ARC);
+    ASSERT_NEAR(c.angle, angle, 1e-9);
+    c.along[0] += one.x;
+    c.along[1] += one.y;
+    constexpr int kSides = 50000;
+    double length = 0, before[3], at[3];
+    circle_at(&c, 0, before);
+    for (int i = 1; i <= kSides; ++i) {
+      circle_at(&c, static_cast<double>(i) / kSides, at);
+      length += std::hypot(at[0] - before[0], at[1] - before[1]);
+      std::copy(at, at + 3, before);
+    }
+    double beside[3];
+    EXPECT_NEAR(circle_length(&c, beside), length, one.tolerance * length);
+    EXPECT_NEAR(beside[0], 0, 1e-6);
+    EXPECT_NEAR(beside[1], 0, 1e-6);
+    EXPECT_NEAR(beside[2], 7, 1e-12);
+  }
 }
 
 }  // namespace

@@ -76,7 +76,21 @@ class OtherMotors : public MovingMotors {
     EXPECT_EQ(coordinate_systems[cs].error, RUN_TIME_NONE);
     found->emplace_back(motors[m.x - 1].trajectory * m.sign, motors[m.y - 1].trajectory * m.sign);
   }
+  // It moves by more than a quarter of a unit in both axes, and ends at these.
+  static void expect_moves_to(const Positions& found, double x, double y) {
+    ASSERT_FALSE(found.empty());
+    std::int64_t most_x = 0, most_y = 0;
+    for (const auto& [at_x, at_y] : found) {
+      most_x = std::max(most_x, std::abs(at_x - found.front().first));
+      most_y = std::max(most_y, std::abs(at_y - found.front().second));
+    }
+    EXPECT_GT(most_x, 250 * kUnit);
+    EXPECT_GT(most_y, 250 * kUnit);
+    EXPECT_NEAR(static_cast<double>(found.back().first), x * 1000 * kUnit, 10);
+    EXPECT_NEAR(static_cast<double>(found.back().second), y * 1000 * kUnit, 10);
+  }
   static void expect_same(const Positions& a, const Positions& b, std::int64_t tolerance) {
+    ASSERT_FALSE(a.empty() || b.empty());
     ASSERT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()), tolerance < 1000 ? 0.0 : 1.0);
     std::int64_t worst = 0;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
@@ -89,15 +103,16 @@ class OtherMotors : public MovingMotors {
 struct Case {
   const char *name, *settings;
   Lines lines;
+  double y = 0;  // where it ends; X at 0
 };
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> all = {
-      {"Linear", "", {"TM100 TA40 TS10 X1 Y-.5", "X-2 Y.3", "TA20 TS0 F30 X1 Y2", "DELAY30", "X0"}},
+      {"Linear", "", {"TM100 TA40 TS10 X1 Y-.5", "X-2 Y.3", "TA20 TS0 F30 X1 Y2", "DELAY30", "X0"}, 2},
       {"Rapid", "", {"RAPID X1 Y-3", "X-1 Y1", "DWELL10", "X0 Y0"}},
       {"Pvt", "90=1000", {"PVT100", "X1:10 Y-1:-5", "X.5:-8 Y-2:0", "X0:0 Y0:0"}},
       {"Spline", "", {"SPLINE1 TM60", "X1 Y-1", "X1.5 Y-3", "SPLINE2 TM40 X-1 Y-2", "X0 Y0"}},
-      {"Segments", "13=5", {"TM100 TA40 TS10 X1 Y-.5", "CIRCLE1 X-1 I-1 J0", "CIRCLE2 X1 Y.5 R2", "LINEAR X0"}},
+      {"Segments", "13=5", {"TM100 TA40 TS10 X1 Y-.5", "CIRCLE1 X-1 I-1 J0", "CIRCLE2 X1 Y.5 R2", "LINEAR X0"}, .5},
       {"Corners", "13=5 83=.7 82=20", {"TM60 TA20 TS0 X1", "Y1", "X1.5 Y1.1", "X0 Y0"}},
       {"Lookahead", "13=5 20=40 83=0", {"F100 TA10 TS0 X6", "Y5", "CIRCLE1 X0 Y-1 R8", "X-3 Y-3 R-4", "LINEAR X0 Y0"}},
       {"Stored", "13=5 20=1", {"F20 TA10 TS0 X1", "Y-1", "X0 Y0"}},
@@ -119,6 +134,7 @@ TEST_P(SameMotion, InTheOtherDirection) {
   record(kPlain, c.settings, c.lines, &plain);
   platform::power_up();
   record(kMirrored, c.settings, c.lines, &mirrored);
+  expect_moves_to(plain, 0, c.y);
   const bool looks = std::string(c.settings).find("20=") != std::string::npos;
   expect_same(plain, mirrored, looks ? 10000 : 10);
 }
@@ -138,6 +154,7 @@ TEST_P(SameMotion, OfOtherMotorsBehindWhatOthersDid) {
   ASSERT_EQ(host("UNDEFINE ALL"), "");
   ASSERT_EQ(host("&3DELETE LOOKAHEAD"), "");
   record(kElsewhere, c.settings, c.lines, &elsewhere);
+  expect_moves_to(elsewhere, 0, c.y);
   expect_same(plain, elsewhere, 0);
 }
 

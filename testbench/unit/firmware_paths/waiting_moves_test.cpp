@@ -36,12 +36,13 @@ class WaitingMoves : public MovingMotors {
     fit(definitions);
     ASSERT_EQ(host("I5113=5 I5190=1000"), "");
   }
-  // 1000 counts a unit, as the definitions have it; X is P10 off as the forward program sees it.
+  // 1000 counts a unit, as the definitions have it; X is P10 off and Y P11 as the forward program sees it.
   static void kinematic(const Lines& definitions) {
     for (unsigned i = 0; i < definitions.size(); ++i)
       ASSERT_EQ(host("&1#" + std::to_string(i + 1) + "->" + definitions[i]), "");
-    for (const char* line : {"&1OPEN FORWARD CLEAR", "Q7=P1/1000+P10 Q8=P2/1000 Q9=P3/1000", "CLOSE",
-                             "&1OPEN INVERSE CLEAR", "P1=Q7*1000 P2=Q8*1000 P3=Q9*1000", "CLOSE", "I5150=1 P10=0"})
+    for (const char* line :
+         {"&1OPEN FORWARD CLEAR", "Q7=P1/1000+P10 Q8=P2/1000+P11 Q9=P3/1000", "CLOSE", "&1OPEN INVERSE CLEAR",
+          "P1=Q7*1000 P2=Q8*1000 P3=Q9*1000", "CLOSE", "I5150=1 P10=0 P11=0"})
       ASSERT_EQ(host(line), "");
   }
   // A line at 10 a s to X1, then `lines`; stopped behind the first.
@@ -340,11 +341,11 @@ TEST_F(WaitingMoves, ArcsTakeTheTimeOfTheirCurve) {
   const struct {
     const char *line, *home;
     double radius, growth, x, y, z;  // z: out of the plane
-  } cases[] = {{"CIRCLE1 X3 Y0 I1 J0", "#1HMZ", 1, 0, 1, 0, 0},
-               {"CIRCLE2 X3 Y0 I1 J0", "#1HMZ", 1, 0, 1, 0, 0},
-               {"CIRCLE1 X4 Y0 I1 J0", "#1HMZ", 1, 1, 1, 0, 0},
-               {"CIRCLE1 X3 Y0 I1 J0", "#2HMZ", 1, 0, 0, -2, 0},
-               {"CIRCLE1 X3 Y0 Z2 I1 J0", "#1HMZ", 1, 0, 1, 0, 2}};
+    double turn = 0.5;
+  } cases[] = {
+      {"CIRCLE1 X3 Y0 I1 J0", "#1HMZ", 1, 0, 1, 0, 0},    {"CIRCLE2 X3 Y0 I1 J0", "#1HMZ", 1, 0, 1, 0, 0},
+      {"CIRCLE1 X4 Y0 I1 J0", "#1HMZ", 1, 1, 1, 0, 0},    {"CIRCLE1 X3 Y0 I1 J0", "#2HMZ", 1, 0, 0, -2, 0},
+      {"CIRCLE1 X3 Y0 Z2 I1 J0", "#1HMZ", 1, 0, 1, 0, 2}, {"CIRCLE1 X1 Y0 I.25 J0", "#1HMZ", .25, 0, 1, 0, 0, 1}};
   for (const auto& c : cases) {
     SCOPED_TRACE(std::string(c.line) + " " + c.home);
     begin({"1000X", "1000Y", "1000Z"});
@@ -352,10 +353,10 @@ TEST_F(WaitingMoves, ArcsTakeTheTimeOfTheirCurve) {
     ASSERT_EQ(host(c.home), "");
     motors[1].trajectory = motors[1].of_system = std::llround(-c.y * 1000 * kUnit);
     platform::servo_ticks(5);
-    const double turn = std::string(c.line).find("CIRCLE2") == 0 ? -1 : 1;
+    const double sense = std::string(c.line).find("CIRCLE2") == 0 ? -1 : 1, angle = 2 * kPi * c.turn;
     const auto place = [&](double u) {
       const double radius = c.radius + c.growth * u;
-      return std::pair{-radius * std::cos(kPi * u) + c.x * u, turn * radius * std::sin(kPi * u) + c.y * u};
+      return std::pair{-radius * std::cos(angle * u) + c.x * u, sense * radius * std::sin(angle * u) + c.y * u};
     };
     ASSERT_EQ(host("&1R"), "");
     for (int i = 0; i < 20 && !segment_is_under_way(0); ++i) platform::servo_ticks(1);
@@ -367,20 +368,64 @@ TEST_F(WaitingMoves, ArcsTakeTheTimeOfTheirCurve) {
   }
 }
 
-// A move without a way, which a forward program gives one by rounding, makes no corner.
+// Moves without a way, which a forward program gives one by rounding, make no corner, whichever axes it rounds and
+// whatever else has changed: nor with each other. `sharp`: by a way of 0.1 they do.
 TEST_F(WaitingMoves, RoundingMakesNoCornerOfAMoveWithoutAWay) {
-  for (const bool rounds : {true, false}) {
+  const struct {
+    Lines lines;
+    std::vector<bool> sharp;  // behind the first, the second, the third
+  } programs[] = {{{"TM50 X1", "Y2 F10", "X1"}, {true, false}},
+                  {{"TM50 X1 Y0", "Y2 F10", "X1"}, {true, false}},
+                  {{"TM50 X1", "Y0", "X3", "X4"}, {true, true, false}},
+                  {{"TM50 X1", "X1 Y0", "Y2 F10"}, {true, true}}};
+  for (const auto& p : programs)
+    for (const char* off :
+         {"P10=0.000000001 P11=0.000000001", "P10=0-0.000000001 P11=0.000000001", "P10=0.1 P11=0.1"}) {
+      SCOPED_TRACE(p.lines[0] + " " + p.lines[1] + " " + off);
+      const bool rounds = std::string(off) != "P10=0.1 P11=0.1";
+      begin({"1000X", "1000Y"});
+      kinematic({"I", "I"});
+      ASSERT_EQ(host("I5183=0.9"), "");
+      stop(p.lines);
+      ASSERT_EQ(path_of(&paths[0], 0)->sharp, false);
+      ASSERT_EQ(host(off), "");
+      ASSERT_EQ(host("&1R"), "");
+      for (int i = 0; i < 20 && !segment_is_under_way(0); ++i) platform::servo_ticks(1);
+      ASSERT_TRUE(segment_is_under_way(0));
+      for (unsigned i = 0; i < p.sharp.size() && i + 1 < paths[0].count; ++i) {
+        EXPECT_EQ(path_of(&paths[0], i + 1)->sharp, !rounds && p.sharp[i]) << i;
+        EXPECT_EQ(path_of(&paths[0], i + 1)->joins, rounds || !p.sharp[i]) << i;
+      }
+    }
+}
+
+// A move without a way behind one that has changed by more than rounding: X is rounded, Y 0.1 off.
+TEST_F(WaitingMoves, RoundingMakesNoCornerBehindAMoveThatHasChanged) {
+  begin({"1000X", "1000Y"});
+  kinematic({"I", "I"});
+  ASSERT_EQ(host("I5183=0.9"), "");
+  stop({"Y2", "TM50 X1", "F10 X3"});
+  ASSERT_EQ(host("P10=0.000000001 P11=0.1"), "");
+  ASSERT_EQ(host("&1R"), "");
+  for (int i = 0; i < 20 && !segment_is_under_way(0); ++i) platform::servo_ticks(1);
+  ASSERT_TRUE(segment_is_under_way(0));
+  EXPECT_NEAR(path_of(&paths[0], 0)->delta[AXIS_Y], 1.9, 1e-9);
+  for (unsigned i = 1; i < paths[0].count; ++i) EXPECT_FALSE(path_of(&paths[0], i)->sharp) << i;
+}
+
+// A full circle has a length though it ends where it begins: 1e-7 are less than 2^-20 of its radius, and more than that
+// of the line behind it. Their corner, which is sharp by now, is judged by what counts as a change alone.
+TEST_F(WaitingMoves, AFullCircleIsAsLongAsItsRadius) {
+  for (const bool changes : {false, true}) {
     begin({"1000X", "1000Y"});
     kinematic({"I", "I"});
+    stop({"CIRCLE1 X1 Y0 I1 J0", "LINEAR X1.01", "X8"});
     ASSERT_EQ(host("I5183=0.9"), "");
-    stop({"TM50 X1", "Y2 F10", "X1"});
-    ASSERT_EQ(path_of(&paths[0], 0)->sharp, false);
-    ASSERT_EQ(host(rounds ? "P10=0.000000001" : "P10=0.1"), "");
+    ASSERT_EQ(host(changes ? "P10=0.00001" : "P10=0.0000001"), "");
     ASSERT_EQ(host("&1R"), "");
     for (int i = 0; i < 20 && !segment_is_under_way(0); ++i) platform::servo_ticks(1);
     ASSERT_TRUE(segment_is_under_way(0));
-    EXPECT_EQ(path_of(&paths[0], 1)->sharp, !rounds) << "from -X to Y";
-    EXPECT_EQ(path_of(&paths[0], 1)->joins, rounds);
+    EXPECT_EQ(path_of(&paths[0], 1)->sharp, changes);
   }
 }
 

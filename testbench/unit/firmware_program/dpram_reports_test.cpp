@@ -381,6 +381,29 @@ TEST_F(DpramReportsTest, NothingIsReadyOfAReportThatIsOff) {
   EXPECT_TRUE(ready() && systems_ready()) << "what is off writes nothing";
 }
 
+// The background's report is turned off while the servo task writes: nothing is left of it to take the ready word back.
+TEST_F(DpramReportsTest, TheBackgroundIsOffBehindTheForegroundToo) {
+  reports.choose_motors(1);
+  ASSERT_EQ(host("I47=1 I50=1 I57=1"), "");
+  servo_ticks(2);
+  background(kSettling);
+  ASSERT_TRUE(ready());
+  ASSERT_EQ(host("I48=1"), "");
+  servo_ticks(2);
+  ASSERT_TRUE(ready());
+  ASSERT_EQ(host("I57=0"), "");
+  background(2);
+  EXPECT_TRUE(ready()) << "that of the servo task";
+  ASSERT_EQ(host("I48=0"), "");
+  background(2);
+  servo_ticks(2);
+  EXPECT_FALSE(ready());
+  ram.write(DPRAM_MOTOR_READY, 0x5555 | DPRAM_DATA_READY);
+  ASSERT_EQ(host("I49=1"), "");
+  background(kSettling);
+  EXPECT_EQ(ram.read(DPRAM_MOTOR_READY), 0x5555 | DPRAM_DATA_READY);
+}
+
 TEST_F(DpramReportsTest, MoreSystemsThanThereAreAreSixteen) {
   ram.write(DPRAM_COMMAND_CONTROL, 0x5A5A);
   reports.choose_systems(255);

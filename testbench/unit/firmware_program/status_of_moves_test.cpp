@@ -290,6 +290,7 @@ TEST_F(StatusOfMoves, TimesLeftOfWhatIsNoLinearMove) {
   ASSERT_EQ(host("&1 I5113=10 B1R"), "");
   for (int i = 0; i < 12; ++i) {
     platform::servo_ticks(50);
+    ASSERT_TRUE(cs().active && cs().moves[cs().executing].kind == MOVE_SEGMENTS);
     expect(0, "segments");
   }
 }
