@@ -130,11 +130,20 @@ static void begin_together(uint32_t motors_of_it) {
   jogs_waiting &= ~motors_of_it;
 }
 
+/* What is asked for behind a move that waits comes after it, a ramp in its place. */
+static bool is_planned(uint32_t together) {
+  for (uint32_t left = together & jogs_asked; left != 0u; left &= left - 1u) {
+    const uint32_t motor = (uint32_t)__builtin_ctz(left);
+    if ((jogs_waiting & jog_bit(motor)) == 0u || jogs[motor].request.aim == AIM_RAMP) return false;
+  }
+  return true;
+}
+
 static void begin_waiting(void) {
   const uint32_t state = hal_mask_servo();
   for (uint32_t left = jogs_waiting; left != 0u;) {
     const uint32_t first = left & -left, together = jog_next(&jogs[__builtin_ctz(left)])->together | first;
-    if ((together & jogs_asked) == 0u) begin_together(together & jogs_waiting);
+    if (is_planned(together)) begin_together(together & jogs_waiting);
     left &= ~together;
   }
   hal_unmask(state);

@@ -2,7 +2,7 @@
 
 struct jog jogs[MOTORS];
 volatile uint32_t jogs_asked;
-uint32_t jogs_waiting;
+volatile uint32_t jogs_waiting;
 
 void jog_not_ready(uint32_t motor) {
   jogs[motor].ready = false;

@@ -49,7 +49,8 @@ struct jog {
 extern struct jog jogs[MOTORS];
 /* A bit a motor: R has something to do. Changed with the servo task held off, and by it. */
 extern volatile uint32_t jogs_asked;
-extern uint32_t jogs_waiting; /* ready, and to begin with others that are not. The same */
+/* A bit a motor: ready, and to begin with others that are not. Changed as jogs_asked. */
+extern volatile uint32_t jogs_waiting;
 
 static inline uint32_t jog_bit(uint32_t motor) { return 1u << motor; }
 static inline struct jog_motion* jog_now(struct jog* j) { return &j->motions[j->current]; }

@@ -473,6 +473,42 @@ TEST_F(Jog, WhatHasBeenDroppedIsForgotten) {
   EXPECT_EQ(motors[0].trajectory, units(-1000));
 }
 
+// A request at any pause while two are planned that begin together: both begin, the one that is asked for again goes to
+// its new place.
+TEST_F(Jog, ARequestBehindAMoveThatWaitsForAnother) {
+  unsigned pauses = 1;
+  for (unsigned at = 1; at <= pauses; ++at) {
+    SCOPED_TRACE(at);
+    platform::power_up();
+    increment(platform::kDefaultI10);
+    for (unsigned motor = 0; motor < 2; ++motor) {
+      ASSERT_EQ(platform::host("I" + std::to_string(motor + 1) + "00=1"), "");
+      motors[motor] = {};
+      motors[motor].loop = LOOP_CLOSED;
+      motors[motor].position_scale = 96;
+      platform::set_i(100 * motor + 119, 1);
+      platform::set_i(100 * motor + 120, 0);
+      platform::set_i(100 * motor + 121, 0);
+      platform::set_i(100 * motor + 192, 1);
+      ASSERT_TRUE(jog_rapid(motor, units(100), 20, 3));
+    }
+    unsigned count = 0;
+    platform::real_time_in_slices([&] {
+      if (++count != at) return;
+      EXPECT_TRUE(jog_rapid(0, units(200), 20, 3));
+    });
+    pauses = std::max(pauses, count);
+    for (int i = 0; i < 400; ++i) {
+      for (unsigned motor = 0; motor < 2; ++motor) jog_servo(motor);
+      platform::real_time();
+    }
+    EXPECT_FALSE(jog_is_moving(0) || jog_is_moving(1));
+    EXPECT_EQ(motors[0].trajectory, units(count >= at ? 200 : 100));
+    EXPECT_EQ(motors[1].trajectory, units(100));
+  }
+  EXPECT_GT(pauses, 10u);
+}
+
 // motion:5.5/1: one whose ramp has taken the place of a move that waited, and which has moved together with another
 // before, does not begin what that other waits for.
 TEST_F(Jog, ARampInPlaceOfAWaitingMoveBeginsNoOther) {
