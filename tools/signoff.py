@@ -122,50 +122,57 @@ def cover_cell(rows, counted):
 
 
 def read_scores(root):
-    """{module of the RTL or folder of the firmware: Score} of docs/mutation.md."""
+    """{(kind, module or folder): Score} of docs/mutation.md, which has a section for each kind."""
     path, found = root / "docs/mutation.md", {}
-    head = None
+    kind = head = None
     for line in path.read_text().splitlines() if path.exists() else []:
         cells = verification_plan.cells_of(line)
-        if cells[0] == "module":
+        if line.startswith("## "):
+            kind, head = line[3:].lower(), None
+        elif cells[0] == "module":
             head = cells
         elif head and line.startswith("| `") and len(cells) == len(head):
             row = dict(zip(head, cells, strict=True))
-            found[row["module"].strip("`")] = Score(row["score"], row["commit"])
+            found[kind, row["module"].strip("`")] = Score(row["score"], row["commit"])
     return found
 
 
 def modules_of(files):
-    """Modules of the RTL and folders of the firmware among design files, in their order."""
+    """[(kind, name)] of the modules of the RTL and folders of the firmware among design files, in their order."""
     found = []
     for file in files:
         path = pathlib.PurePath(file)
         if path.parts[0] == "rtl" and path.suffix == ".sv":
-            found.append(path.stem)
+            found.append(("rtl", path.stem))
         elif path.parts[0] == "firmware":
-            found.append(path.parts[1])
+            found.append(("firmware", path.parts[1]))
     return list(dict.fromkeys(found))
 
 
 def read_proofs(root):
-    """({proof: number of its rules}, {module: proof})"""
+    """({proof: number of its rules}, {module: its proofs}); a proof NAME_pins is of module NAME too."""
     rules = {path.stem: len(re.findall(r"^ +R\d+: assert", path.read_text(), re.M))
              for path in sorted((root / "testbench/formal").glob("*.sv"))}
     table = root / "tools/mutate/modules.toml"
     listed = tomllib.loads(table.read_text()).get("rtl", {}) if table.exists() else {}
-    of_module = {name: row["proof"] for name, row in listed.items() if row.get("proof")}
-    return rules, {**of_module, **{name: name for name in rules}}
+    of_module = collections.defaultdict(list)
+    for name in rules:
+        of_module[name.removesuffix("_pins")].append(name)
+    for name, row in listed.items():
+        if row.get("proof") and name not in of_module:
+            of_module[name].append(row["proof"])
+    return rules, of_module
 
 
 def proof_cell(modules, rules, proof_of):
-    proofs = dict.fromkeys(proof_of[module] for module in modules if module in proof_of)
+    proofs = dict.fromkeys(proof for kind, name in modules if kind == "rtl" for proof in proof_of.get(name, ()))
     return "<br>".join(f"`{proof}` {rules[proof]}" for proof in proofs if proof in rules) or "none"
 
 
 def score_cell(modules, scores):
-    judged = [f"`{module}` {scores[module].percent}" + (STALE if scores[module].commit.endswith(STALE) else "")
+    judged = [f"`{module[1]}` {scores[module].percent}" + (STALE if scores[module].commit.endswith(STALE) else "")
               for module in modules if module in scores]
-    missing = [f"`{module}`" for module in modules if module not in scores]
+    missing = [f"`{name}`" for kind, name in modules if (kind, name) not in scores]
     return "<br>".join(judged + ([f"no figure: {', '.join(missing)}"] if missing else [])) or "no RTL, no firmware"
 
 

@@ -7,7 +7,8 @@
   mutate rtl --changed --resume    modules whose inputs differ from those of their results
   mutate report [--check]          docs/mutation.md from results/mutation; --check: it is fresh, no reason is of a dead
                                    mutant; --release: and each survivor has one
-  mutate again [--count 20]        mutants that the results have as killed; each must die again
+  mutate again [--count 20]        mutants that the results have as killed; each must die again.
+                                   Without a name of one module of RTL or firmware
 Exit status: 0 done, 1 number 0 fails, something cannot be built or a check fails, 2 there is no such thing.
 """
 

@@ -50,6 +50,9 @@ Not mutated: what is fixed before it runs (widths, parameters, generate blocks, 
 static variables, labels, macros with arguments, what is `constexpr`); `board_sim` and the test bench; of the firmware
 what has no native build. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the
 options.
+
+`./dev mutate again` builds twenty killed mutants once more, and each must die again: of one module, which is drawn from
+RTL and firmware, or of each that is named, of any kind. The test `mutation.killed_again` draws.
 """
 
 

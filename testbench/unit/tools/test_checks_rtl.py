@@ -163,6 +163,12 @@ class Unknowns(Tree):
         done = self.judge("servo_ic", "servo_ic/channel_counter.sv", "counter_q - 24'd1", "counter_q - 24'bx")
         self.assertRegex(done.stdout, r"counter_o is unknown at (?!101,)\d+, seed 1")
 
+    def test_a_reset_that_does_not_end_fails(self):
+        """Nothing is unknown then, and nothing moves."""
+        done = self.judge("servo_ic", "servo_ic/servo_ic.sv",
+                          "endmodule : servo_ic", "  initial force rst_ni = 1'b0;\nendmodule : servo_ic")
+        self.expect(done, 1, "outputs have moved; expected 75% at least")
+
     def test_a_latch_of_the_board_without_reset_fails(self):
         done = self.judge("board_top", "host/host_signals.sv",
                           "if (!rst_ni)   latch_q <= brick_regs_pkg::BoardLatchesHostSignalsReset[3:0];\n    else ", "")

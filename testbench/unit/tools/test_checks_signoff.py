@@ -8,7 +8,8 @@ PLAN = """| scenario | stimulus | pass | test | covers |
 |---|---|---|---|---|
 | a line (BREQ-1 to BREQ-2) | lines | low | `Breq.FallsOnALine` | {} |
 """
-MUTATION = """| module | mutants | judged | equal | outside | alive | score | at least | slip | s | seed | commit |
+MUTATION = """## RTL
+| module | mutants | judged | equal | outside | alive | score | at least | slip | s | seed | commit |
 |---|---|---|---|---|---|---|---|---|---|---|---|
 | `breq` | 10 | 10 | 0 | 0 | 1 | 90.0 % | 90.0 % | 90.0 % | 1 | 1 | 1234567890 |
 """
@@ -67,6 +68,24 @@ class SignOff(Tree):
         self.expect(self.run_tool("signoff.py"), 0, "clean")
         self.run_tool("signoff.py", "--write")
         self.assertIn("`breq` 90.0 %, stale |", self.page())
+
+    def test_a_name_of_two_kinds_has_the_score_of_its_own_kind(self):
+        other = MUTATION.replace("90.0 % | 90.0 % | 90", "10.0 % | 10.0 % | 10")
+        self.write("docs/design-files.txt", "breq = rtl/*/breq.sv\nfirmware = firmware/breq/*.c\n"
+                                            "BREQ-1: breq\nBREQ-2: firmware\n")
+        self.write("firmware/breq/fill.c", "")
+        for text, firmware in ((MUTATION + other.replace("RTL", "Firmware"), "`breq` 10.0 %"),
+                               (other.replace("RTL", "Firmware") + MUTATION, "`breq` 10.0 %"),
+                               (MUTATION + other.replace("RTL", "Model"), "no figure: `breq`")):
+            self.write("docs/mutation.md", text)
+            self.run_tool("signoff.py", "--write")
+            self.assertIn("| `breq` 2 | `breq` 90.0 % |", self.page())
+            self.assertIn(f"| none | {firmware} |", self.page())
+
+    def test_a_proof_of_the_pins_is_of_the_module_too(self):
+        self.write("testbench/formal/breq_pins.sv", "    R1: assert (a);\n")
+        self.run_tool("signoff.py", "--write")
+        self.assertIn("| `breq` 2<br>`breq_pins` 1 | `breq` 90.0 % |", self.page())
 
     def test_a_test_that_failed_is_no_pass(self):
         results = (self.root / "docs/test-results.json").read_text()

@@ -279,7 +279,7 @@ class Proofs(unittest.TestCase):
 class Fresh(unittest.TestCase):
     def fresh(self, head, **options):
         judge = mock.Mock(module=mock.Mock(), **{"inputs.return_value": "x"})
-        judge.module.kind, judge.module.name = "rtl", "m"
+        judge.module.kind, judge.module.name, judge.module.file = "rtl", "m", "rtl/host/pic_8259.sv"
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
             records.write(records.path_of("rtl", "m", None), head, [{"number": 1}])
             return session.Session(judge, mock.Mock(**{"part": None, "all": False, "count": None, "seed": 1,

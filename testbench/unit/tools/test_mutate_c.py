@@ -2,6 +2,7 @@
 """The mutation tool on a small C file: the places that its parser finds; the compiled text obeys the number."""
 
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -20,9 +21,8 @@ except ImportError as missing:
 import again  # noqa: E402
 import c_source  # noqa: E402
 import mutant  # noqa: E402
+import native  # noqa: E402
 import schemata  # noqa: E402
-
-import firmware  # noqa: E402
 
 FILE = b"""#include <stdbool.h>
 #include <stddef.h>
@@ -142,19 +142,33 @@ int main(int argc, char** argv) {
 
 class Judges(unittest.TestCase):
     def test_quick_tests_come_first_and_those_only_that_come_to_it(self):
-        judge = mock.Mock(reached={5: [(900, "a", "A.slow"), (3, "b", "B.quick"), (1, "a", "A.quick")]})
-        self.assertEqual([(t.program, t.filter, ms) for t, ms in firmware.Judge.calls(judge, 5)],
-                         [("a", "A.quick", 1), ("b", "B.quick", 3), ("a", "A.slow", 900)])
-        self.assertEqual(list(firmware.Judge.calls(judge, 6)), [])
+        judge = mock.Mock(reached={
+            ("tests", 5): [(900, "a", "A.slow"), (3, "b", "B.quick"), (1, "a", "A.quick"), (1, "a", "A.first")],
+            ("tests", 6): [], ("slip", 5): [(1, "c", "C.other")]})
+        self.assertEqual([(t.program, t.filter, ms) for t, ms in native.Judge.calls(judge, "tests", 5)],
+                         [("a", "A.first:A.quick", 2), ("b", "B.quick", 3), ("a", "A.slow", 900)])
+        self.assertEqual(list(native.Judge.calls(judge, "tests", 6)), [])
 
     def test_the_command_of_another_file_takes_no_notes(self):
-        words = firmware.plain(["cc", "-MD", "-MT", "x.o", "-MF", "x.d", "-O1", "-o", "x.o", "-c", "x.c"], "y.c", "y.o")
+        words = native.plain(["cc", "-MD", "-MT", "x.o", "-MF", "x.d", "-O1", "-o", "x.o", "-c", "x.c"], "y.c", "y.o")
         self.assertEqual(words, ["cc", "-O1", "-o", "y.o", "-c", "y.c"])
 
     def test_again_is_by_tests_that_have_a_name(self):
         self.assertTrue(again.NAMED.match("unit_firmware_servo: Limits.Upper/3"))
         self.assertFalse(again.NAMED.match("unit_firmware_servo: heap-buffer-overflow"))
         self.assertFalse(again.NAMED.match("unit_firmware_servo: /work/a.c:3:4: runtime error: index 5"))
+
+    def test_again_draws_from_kinds_that_are_built_in_seconds(self):
+        """Two that would be drawn are not, though they alone have changed; one has nothing killed."""
+        modules = [mock.Mock(kind=kind) for kind in ("model", "rtl", "host", "firmware", "rtl")]
+        changed = {"model", "host"}
+        with mock.patch.object(again, "killed_rows", lambda m: {} if m is modules[4] else {1: {}}), \
+             mock.patch.object(again.records, "source_of", lambda kind, _: kind in changed), \
+             mock.patch.object(again, "source_hash", lambda _, m: False):
+            drawn = {m.kind for seed in range(50) for m in again.choose(modules, random.Random(seed))}
+            changed.add("firmware")
+            later = {m.kind for seed in range(50) for m in again.choose(modules, random.Random(seed))}
+        self.assertEqual((drawn, later), ({"rtl", "firmware"}, {"firmware"}))
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import gzip
 import io
 import json
 import pathlib
+import subprocess
 import sys
 import tarfile
 import tempfile
@@ -13,7 +14,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 import release  # noqa: E402
 
-GOOD = {"title": "release", "verdict": "passed", "build": {"commit": "c0ffee", "dirty": False}}
+GOOD = {"title": "release", "verdict": "passed", "build": {"commit": "c0ffee", "dirty": False},
+        "runs": [{"name": "smoke", "verdict": "passed"}]}
 
 
 class Release(unittest.TestCase):
@@ -36,6 +38,44 @@ class Release(unittest.TestCase):
                          ["commit is f00, expected c0ffee", "dirty is True, expected False"])
         (self.folder / "report.json").unlink()
         self.assertEqual(len([*release.report_problems(self.folder, "c0ffee")]), 1)
+
+    def test_a_report_with_a_skipped_run_is_refused(self):
+        runs = [*GOOD["runs"], {"name": "packages", "verdict": "skipped"}]
+        self.assertEqual(self.problems(runs=runs), ["packages was skipped; expected every run of the plan"])
+
+    def refusal(self, folder, *kept):
+        return release.refusal(folder, [ROOT, *kept])
+
+    def test_a_new_folder_an_empty_one_and_a_release_are_cleared(self):
+        self.assertIsNone(self.refusal(self.folder / "new"))
+        self.assertIsNone(self.refusal(self.folder))
+        (self.folder / "brick.deb").write_text("one")
+        (self.folder / release.SUMS).write_text(release.checksums(self.folder))
+        self.assertIsNone(self.refusal(self.folder))
+
+    def test_a_folder_with_other_files_is_refused(self):
+        (self.folder / "thesis.txt").write_text("one")
+        self.assertIn("has files that are not of a release", self.refusal(self.folder))
+        (self.folder / release.SUMS).write_text("")
+        self.assertIn("has files that are not of a release", self.refusal(self.folder))
+        (self.folder / release.SUMS).write_text(release.checksums(self.folder))
+        (self.folder / "more").mkdir()
+        self.assertIn("has files that are not of a release", self.refusal(self.folder))
+        self.assertIn("is no folder", self.refusal(self.folder / "thesis.txt"))
+
+    def test_a_folder_that_holds_what_must_stay_is_refused(self):
+        self.assertIn(f"holds {ROOT}", self.refusal(ROOT))
+        self.assertIn(f"holds {ROOT}", self.refusal(ROOT.parent))
+        for kept in (self.folder, self.folder / "results"):
+            self.assertIn(f"holds {kept}", self.refusal(self.folder, kept))
+        self.assertIsNone(self.refusal(self.folder / "out", self.folder))
+
+    def test_the_command_says_so_in_one_line_and_leaves_the_folder_alone(self):
+        (self.folder / "thesis.txt").write_text("one")
+        done = subprocess.run([sys.executable, ROOT / "tools/release.py", self.folder / "build", self.folder,
+                               "--results", "/nowhere"], text=True, capture_output=True)
+        self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (2, "", 1))
+        self.assertTrue((self.folder / "thesis.txt").exists())
 
     def test_files_that_differ_are_named_reports_are_not(self):
         for name, content in (("one", "a"), ("other", "b")):
