@@ -1,6 +1,7 @@
 #include "app/page/page.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "app/build_info.h"
@@ -45,35 +46,38 @@ Page::Page(const PageServer::Options& options, Simulation& simulation, const Mac
       port_(processor) {
   server_.on_open = [this](PageServer::Client) { loop_.post([this] { wanted_ = true; }); };
   server_.on_close = [this](PageServer::Client client) {
+    const std::lock_guard<std::mutex> lock(mailbox_);
+    lists_.erase(client);
     loop_.post([this, client] {
       port_.close(PagePort::kFirst + client);
-      if (watched_.erase(client) != 0) watch_all();
+      watched_.erase(client);
     });
   };
   server_.on_command = [this](PageServer::Client client, const PageCommand& one) {
     loop_.post([this, client, one] { command(client, one); });
   };
   server_.on_watch = [this](PageServer::Client client, const PageWatch& watch) {
-    loop_.post([this, client, watch] {
-      watched_[client] = watch.items;
-      watch_all();
-    });
+    const std::lock_guard<std::mutex> lock(mailbox_);
+    lists_[client] = watch.items;
   };
   loop_.on_turn = [this] { turn(); };
 }
 
 Page::~Page() { loop_.on_turn = nullptr; }
 
-// Between two pieces of simulated time.
+// Between two pieces of simulated time, of which snapshots take half at most.
 void Page::turn() {
   if (server_.viewers() == 0) return;
   snapshot_.sample();
   const auto wall = std::chrono::steady_clock::now();
-  if (wall < next_ || (!wanted_ && machine_.now() == shown_)) return;
-  next_ = wall + kEvery;
+  if (wall < next_) return;
+  watch_all();
+  if (!wanted_ && machine_.now() == shown_) return;
   shown_ = machine_.now();
   wanted_ = false;
   server_.publish(snapshot_.take().dump());
+  const auto end = std::chrono::steady_clock::now();
+  next_ = end + std::max<std::chrono::steady_clock::duration>(kEvery, end - wall);
 }
 
 void Page::command(PageServer::Client client, const PageCommand& command) {
@@ -90,12 +94,16 @@ void Page::command(PageServer::Client client, const PageCommand& command) {
 
 // Each of what anybody watches, once.
 void Page::watch_all() {
-  std::vector<std::string> items;
-  for (const auto& [client, list] : watched_)
-    for (const std::string& item : list)
-      if (std::find(items.begin(), items.end(), item) == items.end()) items.push_back(item);
+  std::map<PageServer::Client, std::vector<std::string>> lists;
+  {
+    const std::lock_guard<std::mutex> lock(mailbox_);
+    lists.swap(lists_);
+  }
+  if (!lists.empty()) wanted_ = true;
+  for (auto& [client, list] : lists) watched_[client] = std::move(list);
+  std::set<std::string> items;
+  for (const auto& [client, list] : watched_) items.insert(list.begin(), list.end());
   snapshot_.watch(items);
-  wanted_ = true;
 }
 
 }  // namespace brick

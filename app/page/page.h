@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ class Page {
   Snapshot snapshot_;
   PagePort port_;
   std::map<PageServer::Client, std::vector<std::string>> watched_;
+  std::mutex mailbox_;
+  std::map<PageServer::Client, std::vector<std::string>> lists_;  // in the mailbox: the newest of each client
   std::chrono::steady_clock::time_point next_;
   Tick shown_ = -1;
   bool wanted_ = false;  // by somebody who has none yet

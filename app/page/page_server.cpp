@@ -1,6 +1,8 @@
 #include "app/page/page_server.h"
 
 #include <atomic>
+#include <exception>
+#include <iostream>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -49,6 +51,7 @@ struct PageServer::Impl {
   bool opened(Client client);
   void forget(Client client);
   void deliver();
+  void serve();
 
   PageServer& owner;
   const Place place;
@@ -112,7 +115,8 @@ void PageServer::Impl::take(tcp::socket socket) {
 
 bool PageServer::Impl::opened(Client client) {
   if (viewing.size() >= kMostViewers) return false;
-  viewing.emplace(client, sessions.at(client));
+  const auto found = sessions.find(client);
+  if (found == sessions.end() || !viewing.insert(*found).second) return false;
   viewers = viewing.size();
   owner.on_open(client);
   return true;
@@ -134,6 +138,14 @@ void PageServer::Impl::deliver() {
   for (const auto& [client, session] : viewing) session->state(state);
 }
 
+// What goes wrong with one client ends neither the simulation nor the others.
+void PageServer::Impl::serve() {
+  for (;;) try {
+      io.run();
+      return;
+    } catch (const std::exception& e) { std::cerr << "brick: page: " << e.what() << std::endl; }
+}
+
 PageServer::PageServer(const Options& options) : impl_(std::make_unique<Impl>(*this, options)) {}
 PageServer::~PageServer() { stop(); }
 std::string PageServer::address() const { return impl_->rules->address(); }
@@ -142,7 +154,7 @@ std::size_t PageServer::viewers() const { return impl_->viewers; }
 
 void PageServer::start() {
   impl_->accept();
-  impl_->thread = std::thread([this] { impl_->io.run(); });
+  impl_->thread = std::thread([this] { impl_->serve(); });
 }
 
 void PageServer::stop() {

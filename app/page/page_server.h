@@ -16,7 +16,7 @@ class PageServer {
   using Client = std::uint64_t;
   static constexpr std::size_t kMostConnections = 32;  // the oldest that is no websocket yet makes room
   static constexpr std::size_t kMostViewers = 16;      // websockets
-  static constexpr std::size_t kMostCommands = 16;     // of one client that are not answered yet; then it is not read
+  static constexpr std::size_t kMostCommands = 16;     // of one client that are not answered yet
 
   struct Options {
     std::string place;  // HOST:PORT or PORT; port 0 takes a free one

@@ -16,7 +16,7 @@ constexpr std::uint32_t kMostHeader = 8192;           // bytes of a request
 constexpr std::chrono::seconds kRequestPatience{10};  // for all of it
 constexpr std::chrono::seconds kSilence{30};          // of a websocket, which is asked after half of it
 constexpr int kSendBuffer = 64 << 10;                 // what lies there is old when it is read
-constexpr std::size_t kMostTexts = 64;                // mistakes that are told to somebody who does not read
+constexpr std::size_t kMostTexts = 64;                // told to somebody who does not read
 
 std::vector<std::string> fields(const http::request<http::empty_body>& request, http::field name) {
   std::vector<std::string> list;
@@ -50,6 +50,7 @@ void PageSession::start() {
 }
 
 void PageSession::requested(Error error) {
+  if (closed_) return;  // to make room, while this was on its way here
   if (error == http::error::header_limit) return refuse(431, "the header is too long; expected 8192 bytes at most");
   if (error == http::error::end_of_stream || error == http::error::partial_message || error == beast::error::timeout)
     return close();
@@ -104,7 +105,7 @@ void PageSession::upgrade() {
   stream_.set_option(limits);
   stream_.read_message_max(kMostPageMessage);
   stream_.async_accept(parser_->get(), [self = shared_from_this()](Error error) {
-    if (error) return self->close();
+    if (error || self->closed_) return self->close();
     self->open_ = true;
     self->buffer_.clear();
     self->say(self->site_.about);
@@ -113,13 +114,13 @@ void PageSession::upgrade() {
   });
 }
 
-// Not from one that waits for many answers, or for whom many wait.
+// Goes on while answers are out, so that pongs are seen; not from one that does not read what it is told.
 void PageSession::read() {
-  if (closed_ || reading_ || commands_ >= site_.most_commands || texts_.size() >= kMostTexts) return;
+  if (closed_ || reading_ || texts_.size() >= kMostTexts) return;
   reading_ = true;
   stream_.async_read(buffer_, [self = shared_from_this()](Error error, std::size_t) {
     self->reading_ = false;
-    if (error) return self->close();
+    if (error || self->closed_) return self->close();
     self->take_message();
     self->read();
   });
@@ -128,13 +129,21 @@ void PageSession::read() {
 void PageSession::take_message() {
   const std::string text = beast::buffers_to_string(buffer_.data());
   buffer_.clear();
+  nlohmann::json mistake{{"kind", "mistake"}};
   try {
     const PageMessage message = parse_page_message(text);
     if (const auto* watch = std::get_if<PageWatch>(&message)) return on_watch(*watch);
+    const auto& command = std::get<PageCommand>(message);
+    mistake["id"] = command.id;
     if (site_.read_only) throw PageMistake("the page is read only (--page-read-only)");
+    if (commands_ >= site_.most_commands)
+      throw PageMistake(std::to_string(site_.most_commands) + " commands wait; expected answers first");
     ++commands_;
-    on_command(std::get<PageCommand>(message));
-  } catch (const PageMistake& e) { say(text_of({{"kind", "mistake"}, {"text", e.what()}})); }
+    on_command(command);
+  } catch (const PageMistake& e) {
+    mistake["text"] = e.what();
+    say(text_of(std::move(mistake)));
+  }
 }
 
 void PageSession::answer(std::string text) {

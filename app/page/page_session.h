@@ -37,7 +37,6 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
 
   void start();
   void close();
-  bool is_open() const { return open_; }  // as a websocket
   void state(std::shared_ptr<const std::string> newest);
   void answer(std::string text);  // to a command
 
@@ -60,8 +59,8 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   std::deque<std::string> texts_;                    // to be sent, in order
   std::shared_ptr<const std::string> state_, sent_;  // the newest that is not sent yet; the one under way
   std::string sending_;
-  std::size_t commands_ = 0;  // not answered yet
-  bool open_ = false, reading_ = false, writing_ = false, closed_ = false;
+  std::size_t commands_ = 0;                                                // not answered yet
+  bool open_ = false, reading_ = false, writing_ = false, closed_ = false;  // open: as a websocket
 };
 
 }  // namespace brick

@@ -16,7 +16,7 @@ using nlohmann::json;
 namespace {
 
 constexpr Tick kSampleEvery = ns_to_ticks(10'000'000);
-constexpr std::size_t kMostSamples = 1000;  // nobody takes them: the oldest go
+constexpr std::size_t kMostSamples = 1000;  // nobody takes them: all of them go
 constexpr unsigned kMotors = 32, kSystems = 16, kMotorsOfNothing = 8;
 constexpr unsigned kWordBits = 24, kMotorWords = 0x80, kSystemWords = 0x2000, kSystemStride = 0x100;
 
@@ -275,26 +275,28 @@ json Snapshot::watchdog() {
 
 // --------------------------------------------------------------------------------------------------------------- watch
 
-void Snapshot::watch(const std::vector<std::string>& items) {
-  watched_.clear();
+void Snapshot::watch(const std::set<std::string>& items) {
+  for (auto at = watched_.begin(); at != watched_.end();)
+    at = items.count(at->first) == 0 ? watched_.erase(at) : std::next(at);
   for (const std::string& item : items) {
-    Watched one{item, "", {}};
+    if (watched_.count(item) != 0) continue;
+    Watched one;
     try {
       one.columns = record_columns(machine_, item);
     } catch (const UsageError& e) { one.mistake = utf8_text(e.what()); }
     if (one.columns.size() > 1) one.mistake = "expected one value";
-    watched_.push_back(std::move(one));
+    watched_.emplace(item, std::move(one));
   }
 }
 
 json Snapshot::watched() const {
   const RecordRow row{static_cast<double>(machine_.now_fs()) * 1e-12};
   json values = json::object();
-  for (const Watched& one : watched_) {
+  for (const auto& [item, one] : watched_) {
     if (one.mistake.empty())
-      values[one.item] = one.columns.front().value(row);
+      values[item] = one.columns.front().value(row);
     else
-      values[one.item] = one.mistake;
+      values[item] = one.mistake;
   }
   return values;
 }

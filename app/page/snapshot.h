@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,8 @@ class Snapshot {
   void sample();
 
   // Items of the watch list, as `--record-of` takes them (docs/record.md). What is none has a text instead of a value.
-  void watch(const std::vector<std::string>& items);
+  // What is watched already stays as it is.
+  void watch(const std::set<std::string>& items);
 
   nlohmann::json take();
 
@@ -39,7 +41,7 @@ class Snapshot {
     Signals::Id plus_limit, minus_limit, home, fault, enable;
   };
   struct Watched {
-    std::string item, mistake;
+    std::string mistake;
     std::vector<RecordColumn> columns;
   };
 
@@ -68,7 +70,7 @@ class Snapshot {
   std::map<unsigned, Samples> samples_;
   std::map<unsigned, Pins> pins_;
   std::vector<double> sample_times_;
-  std::vector<Watched> watched_;
+  std::map<std::string, Watched> watched_;
   std::optional<Tick> sampled_;
   struct Measure {
     double ms = 0;

@@ -353,12 +353,16 @@ function showWatchdog(state) {
 // ------------------------------------------------------------------------------------------------------ watch list
 
 // What a controller is asked for a value with, and changes nothing.
-const ASKS = /^(?:[IPQM](?:\d+|\([^=]+\))|#\d+[PVF?]|&\d+(?:\?\?|%|P[REC])|\?\?\?|SIZE)$/i;
+const ASKS = /^(?:[IPQM](?:\d+|\([^=()]+\))|\?\?\?|SIZE)$/i;
+// `#n` and `&n` hold for all clients: one that has sent `#2` would jog motor 1 with its `J+`.
+const ADDRESSES = /[#&]/;
+const INSTEAD = "not watched: # and & change what all clients address; expected motor1.actual, motor1.error, " +
+  "motor1.velocity or an address (Y:$25)";
 const ASK_EVERY_MS = 500;
 const watched = new Map();
 
 function watchMemory() {
-  const items = [...watched.values()].filter(w => !w.port).map(w => w.item);
+  const items = [...watched.values()].filter(w => w.from === "memory").map(w => w.item);
   if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify({kind: "watch", items: items}));
 }
 
@@ -367,10 +371,10 @@ at("add").onsubmit = event => {
   const item = at("item").value.trim(), table = at("watched");
   if (!item || watched.has(item) || watched.size >= 32) return;
   at("item").value = "";
-  const row = add(table, "tr"), one = {item, port: ASKS.test(item), asked: false};
+  const row = add(table, "tr"), one = {item, from: ADDRESSES.test(item) ? "" : ASKS.test(item) ? "port" : "memory"};
   add(add(row, "td"), "code", "", item);
   one.value = add(row, "td", "", "–");
-  one.from = add(row, "td", "", one.port ? "port" : "memory");
+  add(row, "td", "", one.from);
   const remove = add(add(row, "td"), "button", "", "×");
   remove.setAttribute("aria-label", "remove " + item);
   remove.onclick = () => {
@@ -379,27 +383,31 @@ at("add").onsubmit = event => {
     watchMemory();
   };
   watched.set(item, one);
-  if (one.port && !talks) put(one.value, "the page is read only");
-  if (!one.port) watchMemory();
+  if (!one.from) put(one.value, INSTEAD);
+  if (one.from === "port" && !talks) put(one.value, "the page is read only");
+  if (one.from === "memory") watchMemory();
 };
 
 function showWatched(state) {
   for (const one of watched.values()) {
     const value = state.watch[one.item];
-    if (!one.port && value !== undefined) put(one.value, typeof value === "number" ? +value.toPrecision(10) : value);
+    if (one.from === "memory" && value !== undefined) put(one.value, typeof value === "number" ? +value.toPrecision(10) : value);
   }
 }
 
+// One after the other, so that a button waits for one of them at most.
+let asking = false;
+function ask(rest) {
+  const one = rest.shift();
+  asking = one !== undefined;
+  if (!asking) return;
+  command(one.item, answer => {
+    put(one.value, answer.lines.join(" "));
+    ask(rest);
+  });
+}
 setInterval(() => {
-  if (document.hidden || !talks) return;
-  for (const one of watched.values()) {
-    if (!one.port || one.asked || !socket || socket.readyState !== WebSocket.OPEN) continue;
-    one.asked = true;
-    command(one.item, answer => {
-      one.asked = false;
-      put(one.value, answer.lines.join(" "));
-    });
-  }
+  if (!asking && !document.hidden && talks) ask([...watched.values()].filter(w => w.from === "port"));
 }, ASK_EVERY_MS);
 
 // ------------------------------------------------------------------------------------------------------------ states
@@ -450,11 +458,12 @@ function connect() {
       document.title = message.board + " – brick";
       put(at("about"), `${message.board}, ${message.engine}, ${message.version}` + (message.read_only ? ", read only" : ""));
     }
-    if (message.kind === "mistake") show(message.text, "refused");
-    if (message.kind !== "answer" || !waiting.has(message.id)) return;
     const done = waiting.get(message.id);
     waiting.delete(message.id);
-    done(message);
+    if (message.kind === "answer" && done) return done(message);
+    if (message.kind !== "mistake") return;
+    if (done) done({lines: [message.text], refused: true});
+    else show(message.text, "refused");
   };
   socket.onclose = () => {
     linked("not connected", false);

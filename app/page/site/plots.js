@@ -59,6 +59,7 @@ function drawPlot(canvas, times, values, end, least) {
     pen.lineTo(width, Math.round(y(0)) + 0.5);
     pen.stroke();
   }
+  canvas.plotted = values;
   pen.lineWidth = 1.5;
   pen.lineJoin = "round";
   pen.strokeStyle = style.color;

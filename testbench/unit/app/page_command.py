@@ -7,6 +7,7 @@ import contextlib
 import pathlib
 import random
 import re
+import signal
 import struct
 import tempfile
 import time
@@ -189,9 +190,9 @@ def page_commands():
         answer = page.command("frob")
         check(answer["refused"] and answer["lines"] == ["ERR003"], str(answer))
         check(page.command("P1..300=7")["lines"] == [] and page.command("P1..300")["lines"] == ["7"] * 300, "300 lines")
-        for number in range(30):
+        for number in range(16):
             page.send({"kind": "command", "id": 100 + number, "line": f"P({number}*2)={number} P{number * 2}"})
-        for number in range(30):
+        for number in range(16):
             answer = page.until(lambda m: m["kind"] == "answer", "answer")
             check((answer["id"], answer["lines"]) == (100 + number, [str(number)]), str(answer))
         check(page.command("#1J/")["lines"] == [], "J/")
@@ -298,8 +299,8 @@ def page_hostile():
         check(status_of(server.raw(request[:-2] + b"X: " + b"a" * 20000 + b"\r\n\r\n")) in (431, None), "a huge header")
         check(status_of(server.raw(b"\x00\x01frob\r\n\r\n")) == 400, "noise")
         still_good()
-        with contextlib.suppress(ConnectionError):
-            for _ in range(20):
+        for _ in range(20):
+            with contextlib.suppress(ConnectionError):
                 server.raw(bytes(chance.randrange(256) for _ in range(3000)) + b"\r\n\r\n")
         still_good()
         halves = [server.connect() for _ in range(100)]  # more than there is room for
@@ -343,6 +344,60 @@ def page_hostile():
         for one in crowd:
             one.sock.close()
         still_good()
+
+
+def page_makes_room():
+    """Strangers press a connection out while its upgrade is read: it is closed, and the others are served."""
+    with served_page("--free") as server, server.client() as client:
+        check(client.values("ver") == ["1.947"], "the controller")
+        for size in range(300, 2000, 100):  # bytes of the request: one or more are read of it when it goes
+            request = head(f"/socket?token={server.token}", "GET", {
+                "Host": server.host, "Origin": f"http://{server.host}", "Upgrade": "websocket",
+                "Connection": "Upgrade", "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
+                "Sec-WebSocket-Version": "13", "X": ""})
+            request = request[:-4] + b"a" * max(0, size - len(request)) + b"\r\n\r\n"
+            with contextlib.ExitStack() as stack:
+                idle = [stack.enter_context(server.connect()) for _ in range(31)]
+                good = stack.enter_context(server.open())  # the last that there is room for: all are in
+                server.process.send_signal(signal.SIGSTOP)
+                idle[0].sendall(request)
+                stack.enter_context(server.connect())
+                server.process.send_signal(signal.SIGCONT)
+                answer = good.command("ver")
+                check(answer.get("lines") == ["1.947"], f"{size} bytes: {answer}")
+        check("page:" not in server.end(), "the server complains")
+
+
+def page_commands_wait():
+    """While 16 commands wait the page is read: the 17th is a mistake at once, and all others are answered."""
+    with served_page() as server, server.client() as client, server.open() as page:
+        check(client.values("ver") == ["1.947"], "the controller")
+        server.process.send_signal(signal.SIGSTOP)  # so that all of them are there at once
+        for number in range(40):
+            page.send({"kind": "command", "id": number, "line": "P1..200"})
+        server.process.send_signal(signal.SIGCONT)
+        told = [page.until(lambda m: m["kind"] in ("answer", "mistake"), "an answer to each") for _ in range(40)]
+        mistakes = [m["id"] for m in told if m["kind"] == "mistake"]
+        check(all("16 commands wait" in m["text"] for m in told if m["kind"] == "mistake"), str(told))
+        check(mistakes and mistakes[0] >= 16 and sorted(m["id"] for m in told) == list(range(40)), f"{mistakes}")
+        check(told[-1]["kind"] == "answer", "mistakes do not wait for answers")
+        check(page.command("ver")["lines"] == ["1.947"], "answers")
+
+
+def page_watch_flood():
+    """Watch lists one after the other, dear ones: time goes on, others have their values, SIGTERM ends it."""
+    with served_page() as server, server.open() as page, server.open() as good:
+        good.send({"kind": "watch", "items": ["host.breq"]})
+        good.state(lambda s: "host.breq" in s["watch"], "the other's value")
+        for number in range(3000):
+            page.send({"kind": "watch", "items": [f"X:${32 * number + n:X}" for n in range(31)] + ["*"]})
+        page.send({"kind": "watch", "items": ["Y:$25"]})
+        state = good.state(lambda s: "Y:$25" in s["watch"], "the newest list")
+        check(sorted(state["watch"]) == ["Y:$25", "host.breq"], str(state["watch"]))
+        good.state(lambda s: s["ms"] > state["ms"], "time that passes")
+        for number in range(3000):
+            page.send({"kind": "watch", "items": [f"X:${32 * number + n:X}" for n in range(31)] + ["*"]})
+        server.end()
 
 
 def page_stalled():
