@@ -87,18 +87,23 @@ class WebSocket:
 
     def receive(self):
         """The next message as JSON; None when it is closed."""
-        first = exactly(self.sock, 2)
-        if len(first) < 2 or first[0] & 0xF == 8:
-            return None
-        size = first[1] & 0x7F
-        if size == 126:
-            size = struct.unpack(">H", exactly(self.sock, 2))[0]
-        elif size == 127:
-            size = struct.unpack(">Q", exactly(self.sock, 8))[0]
-        data = exactly(self.sock, size)
-        if first[0] & 0xF == 9:
-            self.frame(data, 10)
-        return json.loads(data) if first[0] & 0xF == 1 else self.receive()
+        text = b""
+        while True:
+            first = exactly(self.sock, 2)
+            if len(first) < 2 or first[0] & 0xF == 8:
+                return None
+            size = first[1] & 0x7F
+            if size == 126:
+                size = struct.unpack(">H", exactly(self.sock, 2))[0]
+            elif size == 127:
+                size = struct.unpack(">Q", exactly(self.sock, 8))[0]
+            data = exactly(self.sock, size)
+            if first[0] & 0xF == 9:
+                self.frame(data, 10)
+            elif first[0] & 0xF < 2:  # a text, or more of it
+                text += data
+                if first[0] & 0x80:
+                    return json.loads(text)
 
     def until(self, wanted, what):
         """The first message for which that holds."""

@@ -4,6 +4,7 @@ nothing, and strangers do not get it.
 usage: page_command.py BRICK CASE; each CASE is one test.
 """
 import contextlib
+import json
 import pathlib
 import random
 import re
@@ -406,8 +407,10 @@ def page_stalled():
         status = pathlib.Path(f"/proc/{server.process.pid}/status").read_text(encoding="ascii")
         return int(status.partition("VmRSS:")[2].split()[0])
     with served_page("--plant", "dac8", "--load", "dac8") as server, server.open() as good:
-        stalled = [server.open() for _ in range(4)]
-        for one in stalled:
+        good.send({"kind": "watch", "items": [f"{n:x>100}" for n in range(32)]})  # states of more than 10 KB
+        size = len(json.dumps(good.state(lambda s: len(s["watch"]) == 32, "watch list")))
+        stalled = [server.open() for _ in range(12)]
+        for one in stalled[:4]:
             for number in range(40):  # more than are taken from one client at a time
                 one.send({"kind": "command", "id": number, "line": "P1..200"})
         good.state()
@@ -421,6 +424,7 @@ def page_stalled():
         see(20)
         before = memory(server)
         see(150)
+        check(150 * len(stalled) * size > 4 * 4096 * 1024, f"{size} bytes a state: nothing would be seen")
         grown = memory(server) - before
         check(grown < 4096, f"{grown} KiB more for clients that take nothing")
         check(good.command("ver")["lines"] == ["1.947"], "answers")
