@@ -6,11 +6,14 @@ namespace brick {
 
 namespace {
 
-constexpr char kAck = 0x06, kBell = 0x07, kReturn = '\r';
+constexpr char kNothing = 0x00, kAck = 0x06, kBell = 0x07, kLineFeed = '\n', kReturn = '\r';
 
-// ethernet:4/4 to ethernet:4/8: a piece that is full and has no end is not all of it.
+// ethernet:4/4 to ethernet:4/8: a piece that is full and has no end is not all of it; an LF stands before the data too
+// with I3 = 1 or 3.
 bool goes_on(const std::string& piece, const std::string& answer) {
-  if (piece.size() < EthernetPacket::kMostReply || piece.back() == kAck) return false;
+  if (piece.back() == kAck) return false;
+  if (piece.back() == kLineFeed) return true;
+  if (piece.size() < EthernetPacket::kMostReply) return false;
   return answer.find(kBell) == std::string::npos || answer.back() != kReturn;
 }
 
@@ -41,8 +44,9 @@ void PagePort::reply(Client client, const std::string& bytes) {
   if (found == waiting_.end() || found->second.empty()) return;
   Waiting& first = found->second.front();
   if (!first.flushes) {
-    first.answer += bytes;
-    if (goes_on(bytes, first.answer)) {
+    const bool nothing = bytes.empty() || bytes.front() == kNothing;
+    if (!nothing) first.answer += bytes;
+    if (!nothing && goes_on(bytes, first.answer)) {
       first.flushes = first.answer.size() >= kLongestAnswer;
       return processor_.request(client,
                                 packet(first.flushes ? EthernetPacket::kFlush : EthernetPacket::kGetBuffer, ""));

@@ -187,12 +187,18 @@ def page_disturbs_nothing():
 
 
 def page_commands():
-    """Buttons and terminal are a client: what is asked is answered, refused, long, and in order."""
+    """Buttons and terminal are a client: what is asked is answered, refused, long, and in order, however I3 is."""
+    with served_page("--free") as server, server.open() as page:  # the factory's I3, and no other client
+        check(page.command("ver")["lines"] == ["1.947"], "ver of a new controller")
     with served_page("--free", "--plant", "dac8", "--load", "dac8") as server, server.open() as page:
         check(page.command("ver")["lines"] == ["1.947"], "ver")
         answer = page.command("frob")
         check(answer["refused"] and answer["lines"] == ["ERR003"], str(answer))
         check(page.command("P1..300=7")["lines"] == [] and page.command("P1..300")["lines"] == ["7"] * 300, "300 lines")
+        for framing in (0, 1, 3, 2):  # firmware:6.2
+            page.command(f"I3={framing}")
+            answers = [page.command(line)["lines"] for line in ("ver", "P1=5", "P1 P2", "frob")]
+            check(answers == [["1.947"], [], ["5", "7"], ["ERR003"]], f"I3={framing}: {answers}")
         for number in range(16):
             page.send({"kind": "command", "id": 100 + number, "line": f"P({number}*2)={number} P{number * 2}"})
         for number in range(16):
