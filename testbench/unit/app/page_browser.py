@@ -149,10 +149,10 @@ def page_in_browser():
 def page_read_only_in_browser():
     with served_page("--free", "--page-read-only") as server, Page() as page:
         page.show(server.address)
-        page.until("document.querySelectorAll('.motor').length === 8", "motors")
+        page.until("document.querySelectorAll('.motor').length === 1", "the motor that the factory activates (I100)")
         check(page.value("document.querySelectorAll('.keys, #terminal, #said').length") == 0, "buttons or a terminal")
         page.type("item", "add", "host.breq")
-        page.until("document.querySelector('#watched td:nth-child(2)').textContent === '1'", "the watch list")
+        page.until("document.querySelector('#watched td:nth-child(2)').textContent === '0'", "the watch list")
         check(not page.said, f"the page complains: {page.said}")
 
 
