@@ -16,24 +16,14 @@ import time
 import command
 from command import check
 from page_client import ServedPage, head, status_of
-from served import PATIENCE, Served, packet
+from served import PATIENCE, Served, ended, packet
 
 SPEC = command.REPOSITORY / "docs/datasheet/firmware.md"
 SITE = command.REPOSITORY / "app" / "page" / "site"
 
 
-@contextlib.contextmanager
 def served_page(*options, **keywords):
-    server = ServedPage(*options, **keywords)
-    try:
-        yield server
-        if server.process.poll() is None:
-            server.end()
-    finally:
-        server.process.kill()
-        server.process.wait()
-        server.process.stdout.close()
-        server.process.stderr.close()
+    return ended(ServedPage(*options, **keywords))
 
 
 def words(text, count):

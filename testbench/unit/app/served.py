@@ -55,9 +55,13 @@ class Served:
         return said
 
 
-@contextlib.contextmanager
 def served(*options):
-    server = Served(*options)
+    return ended(Served(*options))
+
+
+@contextlib.contextmanager
+def ended(server):
+    """The server, which ends with the block: as it should, or killed where the block fails."""
     try:
         yield server
         if server.process.poll() is None:
