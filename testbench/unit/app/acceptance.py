@@ -31,10 +31,10 @@ def golden():
 
 # covers: CARD-3 BIN-2 BREQ-3 BREQ-4 I18-3 I19-1
 def exchanges():
-    """The golden exchanges and every command of firmware:11, byte for byte. Every command in lock-step alone: what the
-    RTL answers there it answers without the model, for which the golden ones are enough."""
+    """The golden exchanges and every command of firmware:11, byte for byte. Every command on the model alone: the image
+    that answers is the same on each engine, and the golden ones reach each part of the hardware."""
     engines = ("systemc", "lockstep", "rtl")
-    for name, least, on in (("golden.txt", 100, engines), ("commands.txt", 100, engines[:2])):
+    for name, least, on in (("golden.txt", 100, engines), ("commands.txt", 100, engines[:1])):
         for engine in on:
             found, compared = exchange_file.differences(name, "--engine", engine)
             check(not found, f"{engine}: " + "\n".join(found))

@@ -75,7 +75,7 @@ TEST_F(FramingTest, FindsOutWhenAProgramChangesI3) {
 // 22221 CR and its checksum, $06: an acknowledge, where no checksum is expected. 3 CR adds up to $40.
 TEST_F(FramingTest, FindsOutWhenAProgramChangesI4) {
   for (const unsigned i3 : {2u, 3u, 1u, 2u, 0u})
-    for (const unsigned i4 : {1u, 0u, 1u, 1u, 0u, 0u}) {
+    for (const unsigned i4 : {1u, 1u, 0u, 0u}) {
       SCOPED_TRACE("I3=" + std::to_string(i3) + " I4=" + std::to_string(i4));
       controller.before_line = [&] { controller.i3 = i3; };
       EXPECT_EQ(reply("P1"), (Lines{"25"}));
