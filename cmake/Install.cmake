@@ -18,8 +18,6 @@ foreach(component Unspecified package)
     DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${component})
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${component}
     FILES_MATCHING PATTERN *.md PATTERN *.svg PATTERN *.png)
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/registers DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL
-    COMPONENT ${component})  # pages of the register map, where ./dev registers has made them
 endforeach()
 
 # What is linked of other people: licences and a list in SPDX, known when the build is finished.

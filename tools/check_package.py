@@ -3,9 +3,9 @@
 
 Two commands in an empty folder build and run all examples of the tree, by CMake; one program is built and run with
 each of the pkg-config files. Each example's tests have to run, none may be skipped (exit status 77 when all that is
-wrong is that a tool of an example is not installed), and the waveform that one of them writes is looked at. No link of
-the installed pages leads to nothing. Nothing that is installed may name this tree or its build folder, but the image,
-whose sources a debugger looks for.
+wrong is that a tool of an example is not installed), and the waveform that one of them writes is looked at. Of the
+installed pages no link leads to nothing, and each is a file of the tree, byte for byte. Nothing that is installed may
+name this tree or its build folder, but the image, whose sources a debugger looks for.
 check_package.py --build DIR, or --prefix DIR [--examples DIR] for what is installed already.
 """
 
@@ -20,10 +20,11 @@ import subprocess
 import sys
 import tempfile
 
-from common import ROOT, finish, skip
+from common import ROOT, finish, skip, tracked
 
 EXAMPLES = "share/brick/examples"
 IMAGE = "share/brick/turbo.elf"
+MADE = "licences/", "copyright", "changelog.gz"  # of what stands beside the pages
 TOOLS = {"cocotb_servo_channel": ["iverilog", "vvp"], "firmware": ["riscv64-unknown-elf-gcc", "make", "patch"]}
 PROGRAMS = {"brick": ("servo_ic", []), "brick-rtl": ("board", ["rtl"])}  # of each pkg-config file: example, arguments
 
@@ -45,6 +46,16 @@ def dead_links(prefix):
         for link in re.findall(r"\]\(([^)\s#]+)[^)\s]*\)", page.read_text()):
             if not re.match("[a-z]+:", link) and not (page.parent / link).exists():
                 yield f"{page.relative_to(prefix)}: {link} is not installed"
+
+
+def other_pages(prefix):
+    """Installed pages that are no files of the tree, or others: what a package holds depends on the commit alone."""
+    known = {str(file) for file in tracked(ROOT)}
+    folder = prefix / "share/doc/brick"
+    for page in sorted(page for page in folder.rglob("*") if page.is_file()):
+        name = str(page.relative_to(folder))
+        if not name.startswith(MADE) and (name not in known or page.read_bytes() != (ROOT / name).read_bytes()):
+            yield f"{page.relative_to(prefix)}: is not {name} of the tree"
 
 
 def without_tools():
@@ -159,7 +170,8 @@ def main():
             good, text = run(["cmake", "--install", options.build, "--prefix", prefix])
             if not good:
                 finish("package", [text])
-        problems = check(prefix, places, options.compiler, wanted)
+        problems = [*(other_pages(prefix) if options.build else []),
+                    *check(prefix, places, options.compiler, wanted)]
     missing = {name: tools for name, tools in without_tools().items() if name in wanted}
     if missing and not problems:
         skip("; ".join(f"{name} needs {', '.join(tools)}" for name, tools in missing.items()))

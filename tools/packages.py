@@ -2,8 +2,9 @@
 """Makes the wheel and the Debian packages of a finished build and tries them: packages.py BUILD DIR [--root].
 
 --root, as root: in a clean Debian 12 of its own below DIR (debootstrap, chroot; apt and pip configured as here) the
-wheel is installed without a compiler and moves a motor, the packages are installed, `brick --version` says the same
-everywhere, and a bench of somebody else's builds against brick-dev and runs its seeds. Without a program
+wheel is installed without a compiler, then the packages; with each `brick --version` says what the build's says and a
+motor moves, by a script and on the page; with the wheel in Python too. A bench of somebody else's builds against
+brick-dev and runs its seeds. Without a program
 that it needs: exit status 77.
 """
 
@@ -13,14 +14,18 @@ import shutil
 import subprocess
 
 import wheel
-from common import finish, skip
+from common import ROOT, finish, skip
 
 SUITE, MIRROR = "bookworm", "http://deb.debian.org/debian"
 SHARED = ["/etc/apt/sources.list", "/etc/apt/sources.list.d", "/etc/apt/apt.conf.d", "/etc/apt/auth.conf.d",
           "/etc/apt/trusted.gpg.d", "/usr/share/keyrings", "/etc/pip.conf", "/etc/ssl/certs",
           "/usr/local/share/ca-certificates", "/etc/resolv.conf", "/etc/hosts"]
 EXAMPLE = "/usr/share/brick/examples/own_bench"
-MOVE = "printf '#1J/\\n#1J:4000\\n@wait 300ms\\n#1P\\n' | /wheel/bin/brick exec --plant dac8 --load dac8 -"
+MOVE = "printf '#1J/\\n#1J:4000\\n@wait 300ms\\n#1P\\n' | {} exec --plant dac8 --load dac8 -"
+# The test that sees a motor move on the page, and what it imports.
+PAGE_TEST = "testbench/unit/app/page_command.py"
+PAGE_FILES = [PAGE_TEST, "testbench/clients/turbo_pmac.py",
+              *(f"testbench/unit/app/{name}.py" for name in ("command", "page_client", "served"))]
 
 
 def debian_packages(build, folder):
@@ -66,22 +71,30 @@ class Root:
         self.run("apt-get", "install", "-y", "-q", "--no-install-recommends", *packages)
 
 
+def motor_problems(run, command, expected):
+    """Of an installed command. `run` runs a command where it is installed; `expected`: what it says of its version."""
+    if run(command, "--version") != expected:
+        yield f"{command} --version is another than that of the build"
+    move = MOVE.format(command)
+    if (where := run("sh", "-c", move)) != "4000\n":
+        yield f"motor 1 stands at {where}, expected 4000: {move}"
+    run("python3", f"/tmp/{PAGE_TEST}", command, "page_moves")
+
+
 def problems_in(root, expected, made, packages):
-    """`expected`: what the command says of its version."""
     for file in [made, *packages]:
         shutil.copy(file, root.place / "tmp")
+    for name in PAGE_FILES:
+        (root.place / "tmp" / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, root.place / "tmp" / name)
     root.run("apt-get", "update", "-q")
     root.install("python3-venv")
     root.run("python3", "-m", "venv", "/wheel")
     root.run("/wheel/bin/pip", "install", "--quiet", f"/tmp/{made.name}")
-    if root.run("/wheel/bin/brick", "--version") != expected:
-        yield "brick --version of the wheel is another than that of the build"
-    if (where := root.run("sh", "-c", MOVE)) != "4000\n":
-        yield f"motor 1 stands at {where}, expected 4000: {MOVE}"
+    yield from motor_problems(root.run, "/wheel/bin/brick", expected)
     root.run("/wheel/bin/python", "-c", wheel.TRIAL)
     root.install(*(f"/tmp/{package.name}" for package in packages))
-    if root.run("/usr/bin/brick", "--version") != expected:
-        yield "brick --version of the package is another than that of the build"
+    yield from motor_problems(root.run, "/usr/bin/brick", expected)
     root.install("g++", "cmake", "make", "pkg-config")
     root.run("cmake", "-S", EXAMPLE, "-B", "/tmp/bench")
     root.run("cmake", "--build", "/tmp/bench")

@@ -1,5 +1,6 @@
 #include "app/page/page.h"
 
+#include <time.h>
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -21,6 +22,12 @@ PageServer::Options with_about(PageServer::Options options, const MachineConfig&
                        {"read_only", options.read_only}}
                       .dump();
   return options;
+}
+
+double processor_seconds(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
 // Without the bytes that frame it.
@@ -65,9 +72,16 @@ Page::Page(const PageServer::Options& options, Simulation& simulation, const Mac
 
 Page::~Page() { loop_.on_turn = nullptr; }
 
-// Between two pieces of simulated time, of which snapshots take half at most.
+// Between two pieces of simulated time.
 void Page::turn() {
   if (server_.viewers() == 0) return;
+  const double begin = processor_seconds(CLOCK_THREAD_CPUTIME_ID);
+  show();
+  taken_ += processor_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
+}
+
+// Snapshots take half of the wall's time at most.
+void Page::show() {
   snapshot_.sample();
   const auto wall = std::chrono::steady_clock::now();
   if (wall < next_) return;
@@ -75,9 +89,16 @@ void Page::turn() {
   if (!wanted_ && machine_.now() == shown_) return;
   shown_ = machine_.now();
   wanted_ = false;
-  server_.publish(snapshot_.take().dump());
+  json state = snapshot_.take();
+  state["cost"] = cost();
+  server_.publish(state.dump());
   const auto end = std::chrono::steady_clock::now();
   next_ = end + std::max<std::chrono::steady_clock::duration>(kEvery, end - wall);
+}
+
+// Processor seconds so far: of what reads and sends states, and of the whole process.
+json Page::cost() const {
+  return {{"page", taken_ + server_.processor_seconds()}, {"all", processor_seconds(CLOCK_PROCESS_CPUTIME_ID)}};
 }
 
 void Page::command(PageServer::Client client, const PageCommand& command) {

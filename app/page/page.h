@@ -32,6 +32,8 @@ class Page {
 
  private:
   void turn();
+  void show();
+  nlohmann::json cost() const;
   void command(PageServer::Client client, const PageCommand& command);
   void watch_all();
 
@@ -45,6 +47,7 @@ class Page {
   std::map<PageServer::Client, std::vector<std::string>> lists_;  // in the mailbox: the newest of each client
   std::chrono::steady_clock::time_point next_;
   Tick shown_ = -1;
+  double taken_ = 0;     // by turns, of the simulation's thread, in processor seconds
   bool wanted_ = false;  // by somebody who has none yet
 };
 

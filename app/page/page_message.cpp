@@ -24,12 +24,12 @@ const json& member(const json& object, const char* name) {
 }
 
 PageCommand command_of(const json& message) {
-  const json &id = member(message, "id"), &line = member(message, "line");
+  const json& id = member(message, "id");
   if (!id.is_number_integer() || id < 0 || id > kLargestId) throw PageMistake("id: expected a whole number from 0 on");
-  if (!line.is_string()) throw PageMistake("line: expected a text");
-  const auto text = line.get<std::string>();
+  const json& line = member(message, "line");
+  const auto text = line.is_string() ? line.get<std::string>() : "";
   if (text.empty() || text.size() > kLongestLine || !is_plain(text))
-    throw PageMistake("line: expected 1 to 255 characters of ASCII");
+    throw PageMistake("line: expected 1 to 255 characters of ASCII", id.get<std::int64_t>());
   return {id.get<std::int64_t>(), text};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -24,7 +25,9 @@ using PageMessage = std::variant<PageCommand, PageWatch>;
 
 class PageMistake : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit PageMistake(const std::string& what, std::optional<std::int64_t> of = std::nullopt)
+      : std::runtime_error(what), id(of) {}
+  std::optional<std::int64_t> id;  // of the command
 };
 
 constexpr std::size_t kMostPageMessage = 4096;  // bytes

@@ -1,5 +1,7 @@
 #include "app/page/page_server.h"
 
+#include <pthread.h>
+#include <time.h>
 #include <atomic>
 #include <exception>
 #include <iostream>
@@ -151,6 +153,14 @@ PageServer::~PageServer() { stop(); }
 std::string PageServer::address() const { return impl_->rules->address(); }
 bool PageServer::beyond_loopback() const { return impl_->rules->beyond_loopback(); }
 std::size_t PageServer::viewers() const { return impl_->viewers; }
+
+double PageServer::processor_seconds() const {
+  clockid_t clock{};
+  timespec used{};
+  if (impl_->thread.joinable() && pthread_getcpuclockid(impl_->thread.native_handle(), &clock) == 0)
+    clock_gettime(clock, &used);
+  return static_cast<double>(used.tv_sec) + static_cast<double>(used.tv_nsec) * 1e-9;
+}
 
 void PageServer::start() {
   impl_->accept();

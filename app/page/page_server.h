@@ -38,6 +38,7 @@ class PageServer {
 
   // From any thread.
   std::size_t viewers() const;
+  double processor_seconds() const;              // that its thread has used
   void publish(std::string state);               // to all; a newer state takes the place of one not sent yet
   void answer(Client client, std::string text);  // to a command
 

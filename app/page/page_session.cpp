@@ -129,19 +129,18 @@ void PageSession::read() {
 void PageSession::take_message() {
   const std::string text = beast::buffers_to_string(buffer_.data());
   buffer_.clear();
-  nlohmann::json mistake{{"kind", "mistake"}};
   try {
     const PageMessage message = parse_page_message(text);
     if (const auto* watch = std::get_if<PageWatch>(&message)) return on_watch(*watch);
     const auto& command = std::get<PageCommand>(message);
-    mistake["id"] = command.id;
-    if (site_.read_only) throw PageMistake("the page is read only (--page-read-only)");
+    if (site_.read_only) throw PageMistake("the page is read only (--page-read-only)", command.id);
     if (commands_ >= site_.most_commands)
-      throw PageMistake(std::to_string(site_.most_commands) + " commands wait; expected answers first");
+      throw PageMistake(std::to_string(site_.most_commands) + " commands wait; expected answers first", command.id);
     ++commands_;
     on_command(command);
   } catch (const PageMistake& e) {
-    mistake["text"] = e.what();
+    nlohmann::json mistake{{"kind", "mistake"}, {"text", e.what()}};
+    if (e.id) mistake["id"] = *e.id;
     say(text_of(std::move(mistake)));
   }
 }

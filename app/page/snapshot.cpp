@@ -5,9 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "app/byte_text.h"
 #include "app/hand_encoder.h"
-#include "systemc/core/usage_error.h"
+#include "app/page/executing_line.h"
 
 namespace brick {
 
@@ -31,7 +30,6 @@ constexpr std::uint32_t kMotorBlock = 100, kIxx09 = 9;
 constexpr std::uint32_t kServoDividerBelowDirection = 5;  // I7m02 and I7m07, I6802 and I6807
 
 constexpr std::uint32_t kAssigned = 1u << 15, kSystemShift = 20;  // status word 2 of a motor, firmware:5.3
-constexpr std::uint32_t kLineWords = 300, kProgram = 0;           // longest line; kind of a motion program
 
 double rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
@@ -45,7 +43,7 @@ double signed_long(std::uint32_t x, std::uint32_t y) {
 }  // namespace
 
 Snapshot::Snapshot(Simulation& simulation, const std::string& firmware)
-    : simulation_(simulation), machine_(simulation.machine()), image_(machine_, firmware) {
+    : simulation_(simulation), machine_(simulation.machine()), image_(machine_, firmware), watch_(machine_) {
   const Signals& signals = machine_.signals();
   for (unsigned number = 1; number <= kMotors; ++number) {
     const auto place = motor_place(machine_.fitted(), number);
@@ -147,53 +145,6 @@ json Snapshot::motor(unsigned number, double servo_khz) {
 
 // -------------------------------------------------------------------------------------------------- coordinate systems
 
-// Of the words that `count` says, from the second on of ImageCalls' own.
-std::string Snapshot::words_text(std::uint32_t count) {
-  constexpr std::uint32_t kFirst = 2;
-  image_.take_text();
-  if (!call("lister_line", {ImageCalls::kWords + 4 * kFirst, count, 0, ImageCalls::kPut})) return "";
-  return utf8_text(image_.take_text());
-}
-
-// The line that executes, as `PE` and `LIST PE` report it: of a program with those that called it, or of the ring.
-json Snapshot::program_line(unsigned system) {
-  constexpr std::uint32_t kFirst = 2;
-  const std::uint32_t cs = system - 1;
-  const auto put_word = [&](std::uint32_t index, std::uint64_t value) {
-    image_.set_word(kFirst + 2 * index, static_cast<std::uint32_t>(value));
-    image_.set_word(kFirst + 2 * index + 1, static_cast<std::uint32_t>(value >> 32));
-  };
-  if (!call("run_executing", {cs, ImageCalls::kWords})) return nullptr;
-  const std::uint32_t depth = image_.word(0);
-  std::string at;
-  std::uint32_t program = 0, offset = 0;
-  for (std::uint32_t i = 0; i <= depth && i < 16; ++i) {
-    program = image_.word(1 + i) & 0xFFFF;
-    offset = image_.word(1 + i) >> 16;
-    at += fmt::format("{}P{}:{}", i == 0 ? "" : ">", program, offset);
-  }
-  std::uint32_t count = 0;
-  if (program != 0) {
-    if (call("program_password_protects", {kProgram, program}).value_or(1) & 0xFF) return {{"at", at}, {"text", ""}};
-    const auto found = static_cast<std::uint32_t>(call("fixed_program_find", {kProgram, program}).value_or(0));
-    if (found == 0) return nullptr;
-    count = static_cast<std::uint32_t>(call("fixed_program_line", {found, offset}).value_or(0));
-    count = std::min(count, kLineWords);
-    for (std::uint32_t i = 0; i < count; ++i) put_word(i, call("fixed_program_word", {found, offset + i}).value_or(0));
-  } else {
-    const std::uint64_t ahead = call("rotary_lines_ahead", {cs}).value_or(0);
-    const auto first = static_cast<std::uint32_t>(ahead), words = static_cast<std::uint32_t>(ahead >> 32);
-    for (; count < words && count < kLineWords; ++count) {
-      const auto place = static_cast<std::uint32_t>(call("rotary_offset", {cs, first, count}).value_or(0));
-      const std::uint64_t value = call("rotary_word", {cs, place}).value_or(0);
-      if (count != 0 && (value >> 47 & 1) != 0) break;  // the next line begins
-      put_word(count, value);
-    }
-    if (count == 0) return nullptr;
-  }
-  return {{"at", at}, {"text", count == 0 ? "" : words_text(count)}};
-}
-
 json Snapshot::system(unsigned number) {
   const std::uint32_t base = kSystemWords + kSystemStride * (number - 1);
   const Word status = word(base + kCsStatus13), ring = word(base + kRotary);
@@ -201,7 +152,7 @@ json Snapshot::system(unsigned number) {
   return {{"number", number},
           {"status", {status.x, word(base + kCsStatus2).y, status.y}},
           {"feed", rounded(real_of(feed))},
-          {"line", program_line(number)},
+          {"line", executing_line(image_, number)},
           {"error", word(base + kRunTimeError).y},
           {"lines", ring.x},
           {"words", ring.y},
@@ -237,29 +188,41 @@ void Snapshot::measure() {
   }
   const auto direction = static_cast<std::uint32_t>(variable(kI19));
   phase_cycles_ = static_cast<std::uint32_t>(call("phase_period", {}).value_or(0));
-  servo_cycles_ = phase_cycles_ * static_cast<std::uint32_t>(variable(direction - kServoDividerBelowDirection) + 1);
-  real_time_cycles_ = servo_cycles_ * static_cast<std::uint32_t>(variable(kI8) + 1);
+  servo_phases_ = static_cast<std::uint32_t>(variable(direction - kServoDividerBelowDirection) + 1);
+  real_time_servos_ = static_cast<std::uint32_t>(variable(kI8) + 1);
 }
 
 json Snapshot::clocks() {
   const double cpu_mhz = 1e9 / static_cast<double>(machine_.cpu_period());
   const auto khz = [&](std::uint32_t cycles) { return cycles == 0 ? 0 : rounded(cpu_mhz * 1e3 / cycles); };
-  return {{"i19", variable(kI19)},           {"source", signal("clock.source")},   {"phase_khz", khz(phase_cycles_)},
-          {"servo_khz", khz(servo_cycles_)}, {"counted_khz", rounded(servo_khz_)}, {"i10", variable(kI10)},
-          {"i52", variable(kI52)},           {"cpu_mhz", rounded(cpu_mhz)}};
+  return {{"i19", variable(kI19)},
+          {"source", signal("clock.source")},
+          {"phase_khz", khz(phase_cycles_)},
+          {"servo_khz", khz(phase_cycles_ * servo_phases_)},
+          {"counted_khz", rounded(servo_khz_)},
+          {"i10", variable(kI10)},
+          {"i52", variable(kI52)},
+          {"cpu_mhz", rounded(cpu_mhz)}};
 }
 
-// Durations are in half CPU cycles.
+// Durations and loads as the controller has them, firmware:8.1: a duration, in half CPU cycles, is from interrupt to
+// return; a load is the share of the task itself, without those that interrupted it.
 json Snapshot::tasks() {
   const Word pair = word(kTasks), real_time = word(kRealTime);
   const double us = static_cast<double>(machine_.cpu_period()) * 1e-9;
-  const auto task = [&](std::uint32_t halves, std::uint32_t period) {
-    return json{{"us", rounded(2 * halves * us)}, {"load", period == 0 ? 0 : rounded(2.0 * halves / period)}};
+  const std::uint32_t phase_period = phase_cycles_ / 2, servo_period = phase_period * servo_phases_;
+  const auto task = [&](std::uint32_t halves, std::int64_t own, std::int64_t period) {
+    return json{{"us", rounded(2 * halves * us)},
+                {"load", period == 0 ? 0 : rounded(static_cast<double>(own) / static_cast<double>(period))}};
   };
-  return {{"phase", task(pair.x, phase_cycles_)},
-          {"servo", task(pair.y, servo_cycles_)},
-          {"real_time", task(real_time.x, real_time_cycles_)},
-          {"real_time_longest", task(real_time.y, real_time_cycles_)},
+  const std::int64_t phase = pair.x, servo = pair.y, longest = real_time.x;
+  const std::int64_t servo_own = servo - (phase_period == 0 ? 0 : servo / phase_period * phase);
+  const std::int64_t real_time_own =
+      longest - (phase_period == 0 ? 0 : longest / phase_period * phase + longest / servo_period * servo_own);
+  return {{"phase", task(pair.x, phase, phase_period)},
+          {"servo", task(pair.y, servo_own, servo_period)},
+          {"real_time", task(real_time.x, real_time_own, std::int64_t{servo_period} * real_time_servos_)},
+          {"real_time_longest_us", rounded(2 * real_time.y * us)},
           {"asleep", rounded(asleep_)}};
 }
 
@@ -273,41 +236,14 @@ json Snapshot::watchdog() {
           {"tripped", signal("watchdog.tripped")}};
 }
 
-// --------------------------------------------------------------------------------------------------------------- watch
-
-void Snapshot::watch(const std::set<std::string>& items) {
-  for (auto at = watched_.begin(); at != watched_.end();)
-    at = items.count(at->first) == 0 ? watched_.erase(at) : std::next(at);
-  for (const std::string& item : items) {
-    if (watched_.count(item) != 0) continue;
-    Watched one;
-    try {
-      one.columns = record_columns(machine_, item);
-    } catch (const UsageError& e) { one.mistake = utf8_text(e.what()); }
-    if (one.columns.size() > 1) one.mistake = "expected one value";
-    watched_.emplace(item, std::move(one));
-  }
-}
-
-json Snapshot::watched() const {
-  const RecordRow row{static_cast<double>(machine_.now_fs()) * 1e-12};
-  json values = json::object();
-  for (const auto& [item, one] : watched_) {
-    if (one.mistake.empty())
-      values[item] = one.columns.front().value(row);
-    else
-      values[item] = one.mistake;
-  }
-  return values;
-}
-
 // ------------------------------------------------------------------------------------------------------------ snapshot
 
 json Snapshot::take() {
   image_.refresh();
   measure();
   const double cpu_mhz = 1e9 / static_cast<double>(machine_.cpu_period());
-  const double servo_khz = servo_cycles_ == 0 ? 0 : cpu_mhz * 1e3 / servo_cycles_;
+  const double servo_cycles = static_cast<double>(phase_cycles_) * servo_phases_;
+  const double servo_khz = servo_cycles == 0 ? 0 : cpu_mhz * 1e3 / servo_cycles;
   const Word global = word(kGlobalStatus);
   json motors = json::array(), systems = json::array();
   std::uint32_t used = 1;  // coordinate system 1 is always shown
@@ -336,7 +272,7 @@ json Snapshot::take() {
           {"clocks", clocks()},
           {"tasks", tasks()},
           {"watchdog", watchdog()},
-          {"watch", watched()}};
+          {"watch", watch_.values()}};
 }
 
 }  // namespace brick

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/page/image_calls.h"
+#include "app/page/watch_list.h"
 #include "app/record_column.h"
 #include "app/simulation.h"
 
@@ -26,9 +27,7 @@ class Snapshot {
   // milliseconds of simulated time.
   void sample();
 
-  // Items of the watch list, as `--record-of` takes them (docs/record.md). What is none has a text instead of a value.
-  // What is watched already stays as it is.
-  void watch(const std::set<std::string>& items);
+  void watch(const std::set<std::string>& items) { watch_.set(items); }
 
   nlohmann::json take();
 
@@ -39,10 +38,6 @@ class Snapshot {
   };
   struct Pins {
     Signals::Id plus_limit, minus_limit, home, fault, enable;
-  };
-  struct Watched {
-    std::string mistake;
-    std::vector<RecordColumn> columns;
   };
 
   std::optional<std::uint64_t> call(const std::string& function, std::initializer_list<std::uint32_t> arguments);
@@ -55,13 +50,10 @@ class Snapshot {
   std::vector<unsigned> shown_motors();
   nlohmann::json motor(unsigned number, double servo_khz);
   nlohmann::json system(unsigned number);
-  nlohmann::json program_line(unsigned system);
-  std::string words_text(std::uint32_t count);
   nlohmann::json request();
   nlohmann::json clocks();
   nlohmann::json tasks();
   nlohmann::json watchdog();
-  nlohmann::json watched() const;
   void measure();
 
   Simulation& simulation_;
@@ -70,7 +62,7 @@ class Snapshot {
   std::map<unsigned, Samples> samples_;
   std::map<unsigned, Pins> pins_;
   std::vector<double> sample_times_;
-  std::map<std::string, Watched> watched_;
+  WatchList watch_;
   std::optional<Tick> sampled_;
   struct Measure {
     double ms = 0;
@@ -78,7 +70,8 @@ class Snapshot {
     Cycle cycle = 0, slept = 0;
   } last_;
   double servo_khz_ = 0, asleep_ = 0;
-  std::uint32_t phase_cycles_ = 0, servo_cycles_ = 0, real_time_cycles_ = 0;  // periods, of the CPU clock
+  std::uint32_t phase_cycles_ = 0;                         // period, of the CPU clock
+  std::uint32_t servo_phases_ = 1, real_time_servos_ = 1;  // periods, of the next shorter one
 };
 
 }  // namespace brick

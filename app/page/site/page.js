@@ -285,7 +285,7 @@ function showStatus() {
       });
     });
     at("pins")?.remove();
-    if (kind === "motor" && one.pins) add(add(at("status"), "div"), "h3", "", "Pins of the channel ").id = "pins";
+    if (kind === "motor") add(add(at("status"), "div"), "h3").id = "pins";
   }
   words.forEach(([, , value], i) => {
     const box = at("status").children[i];
@@ -296,8 +296,9 @@ function showStatus() {
       if (high !== low) put(box.rows[j].meaning, meaning + ": " + (says ? says(field) : field));
     });
   });
-  if (kind === "motor" && one.pins)
-    put(at("pins"), "Pins of the channel: " + Object.entries(one.pins).map(p => p.join(" ")).join(", "));
+  if (kind === "motor")
+    put(at("pins"), one.pins ? "Pins of the channel: " + Object.entries(one.pins).map(p => p.join(" ")).join(", ") :
+      "Pins: no channel of this board is motor " + number + "'s");
 }
 at("status-of").onchange = showStatus;
 
@@ -329,16 +330,18 @@ function showClocks(state) {
 
 const bars = new Map();
 function showTask(name, task) {
-  tasks(name, `${fixed(task.us, 1)} µs, ${percent(task.load)}`);
+  tasks(name, `${fixed(task.us, 1)} µs, load ${percent(task.load)}`).title =
+    "from interrupt to return; the load is without the tasks that interrupted it (firmware:8.1)";
   if (!bars.has(name)) bars.set(name, add(add(at("tasks"), "div", "load"), "div"));
   bars.get(name).style.width = percent(task.load).replace("−", "-").replace(" ", "");
 }
 function showTasks(state) {
   const t = state.tasks;
-  showTask("phase, of its period", t.phase);
-  showTask("servo, of its period", t.servo);
-  showTask("real-time, of its period", t.real_time);
-  tasks("real-time, longest", `${fixed(t.real_time_longest.us, 1)} µs`);
+  showTask("phase", t.phase);
+  showTask("servo", t.servo);
+  showTask("real-time", t.real_time);
+  tasks("real-time, longest", `${fixed(t.real_time_longest_us, 1)} µs`);
+  tasks("background, longest", `${state.watchdog.reload - state.watchdog.lowest} servo cycles`);
   tasks("CPU asleep", percent(t.asleep));
 }
 
@@ -356,6 +359,8 @@ function showWatchdog(state) {
 const ASKS = /^(?:[IPQM](?:\d+|\([^=()]+\))|\?\?\?|SIZE)$/i;
 // `#n` and `&n` hold for all clients: one that has sent `#2` would jog motor 1 with its `J+`.
 const ADDRESSES = /[#&]/;
+const PLAIN = /^[!-:<-~]+$/;
+const EXPECTED = "not watched: expected ASCII without blanks and semicolons";
 const INSTEAD = "not watched: # and & change what all clients address; expected motor1.actual, motor1.error, " +
   "motor1.velocity or an address (Y:$25)";
 const ASK_EVERY_MS = 500;
@@ -371,7 +376,8 @@ at("add").onsubmit = event => {
   const item = at("item").value.trim(), table = at("watched");
   if (!item || watched.has(item) || watched.size >= 32) return;
   at("item").value = "";
-  const row = add(table, "tr"), one = {item, from: ADDRESSES.test(item) ? "" : ASKS.test(item) ? "port" : "memory"};
+  const row = add(table, "tr"), wrong = ADDRESSES.test(item) ? INSTEAD : PLAIN.test(item) ? "" : EXPECTED,
+    one = {item, from: wrong ? "" : ASKS.test(item) ? "port" : "memory"};
   add(add(row, "td"), "code", "", item);
   one.value = add(row, "td", "", "–");
   add(row, "td", "", one.from);
@@ -383,7 +389,7 @@ at("add").onsubmit = event => {
     watchMemory();
   };
   watched.set(item, one);
-  if (!one.from) put(one.value, INSTEAD);
+  if (wrong) put(one.value, wrong);
   if (one.from === "port" && !talks) put(one.value, "the page is read only");
   if (one.from === "memory") watchMemory();
 };
@@ -413,7 +419,7 @@ setInterval(() => {
 // ------------------------------------------------------------------------------------------------------------ states
 
 let latest = null, drawn = null;
-const rate = {wall: 0, ms: 0};
+const rate = {wall: 0, ms: 0, cost: null};
 
 function draw() {
   if (latest && latest !== drawn && !document.hidden) drawMotors(latest.ms);
@@ -425,9 +431,11 @@ function showState(state) {
   const wall = performance.now();
   put(at("time"), fixed(state.ms / 1000, 2) + " s");
   if (wall - rate.wall >= 1000) {
-    put(at("rate"), rate.wall ? `simulated, ${fixed((state.ms - rate.ms) / (wall - rate.wall), 2)} of real time` : "simulated");
-    rate.wall = wall;
-    rate.ms = state.ms;
+    const cost = state.cost;
+    put(at("rate"), !rate.wall ? "simulated" :
+      `simulated, ${fixed((state.ms - rate.ms) / (wall - rate.wall), 2)} of real time; the page takes ` +
+      `${percent((cost.page - rate.cost.page) / (cost.all - rate.cost.all))} of its processor time`);
+    Object.assign(rate, {wall, ms: state.ms, cost});
   }
   showMotors(state);
   showSystems(state);

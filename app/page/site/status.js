@@ -14,7 +14,7 @@ const STATUS = {
      [10, 10, "searches a trigger"], [9, 9, "user phase"], [8, 8, "user servo"], [7, 7, "alternate source"],
      [6, 6, "phased motor"], [5, 5, "following offset mode"], [4, 4, "position following"], [3, 3, "error trigger"],
      [2, 2, "software capture"], [1, 1, "integrator in the velocity loop"], [0, 0, "alternate output"]],
-    [[23, 20, "coordinate system", n => n + 1], [19, 16, "axis", n => AXES[n]],
+    [[23, 20, "coordinate system", n => n + 1], [19, 16, "axis", n => AXES[n] || n],
      [15, 15, "assigned to a coordinate system"], [14, 14, "amplifier enabled"],
      [13, 13, "in position by the servo task"], [12, 12, "stopped at its desired position limit"],
      [11, 11, "stopped on a limit"], [10, 10, "home complete"], [9, 9, "phase reference searched"],

@@ -5,6 +5,7 @@ usage: page_browser.py BRICK CASE; each CASE is one test. BRICK_PAGE_PNG=FOLDER 
 """
 import os
 import pathlib
+import signal
 import tempfile
 import time
 
@@ -99,14 +100,21 @@ def page_in_browser():
                        "at('line').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}))")
             check(page.value("at('line').value") == "ver", "the history of the terminal")
             page.value("at('line').value = ''")
-            for item in ("host.breq", "P1", "#1P"):
+            page.type("line", "say", "#3")  # what all clients address from now on
+            for item in ("host.breq", "P1", "#1P", "a b"):
                 page.type("item", "add", item)
             page.type("line", "say", "P1=12.5")
             page.until("[...document.querySelectorAll('#watched tr')].map(r => r.cells[1].textContent + ' ' + "
                        "r.cells[2].textContent).slice(0, 2).join() === '0 memory,12.5 port'", "the watch list")
-            check(page.value("document.querySelector('#watched tr:last-child td:nth-child(2)').textContent"
-                             ".includes('motor1.actual')"), "what stands in place of #1P")
-            page.value("document.querySelector('#watched tr:last-child button').click()")
+            for place, wanted in ((3, "motor1.actual"), (4, "without blanks")):
+                check(page.value(f"document.querySelector('#watched tr:nth-child({place}) td:nth-child(2)').textContent"
+                                 f".includes('{wanted}')"), f"row {place} says {wanted}")
+            page.type("line", "say", "P1=13")  # the list is asked for once more
+            page.until("document.querySelector('#watched tr:nth-child(2) td:nth-child(2)').textContent === '13'", "P1")
+            page.type("line", "say", "#")
+            page.until("at('said').lastChild.textContent === '3'", "the watch list addresses nothing")
+            for _ in range(2):
+                page.value("document.querySelector('#watched tr:last-child button').click()")
             # A button moves the motor, the plots move with it.
             page.press("#1 stop, close the loop")
             page.until(f"{MOTOR_1}.querySelector('.name span').textContent === 'in position'", "it is closed")
@@ -144,6 +152,39 @@ def page_in_browser():
             check(not page.said, f"the page complains: {page.said}")
             check(all(u.startswith((server.address.split("/?")[0], "data:")) for u in page.asked) and
                   len(page.asked) < 4, f"asks: {page.asked}")
+
+
+def page_refusals_in_browser():
+    """What the terminal and the watch list are refused stands there as a refusal, and what is behind it goes on; motors
+    that the board has no axis for are shown as what they are."""
+    refusals = "[...at('said').querySelectorAll('.refused')].map(l => l.textContent)"
+    with served_page("--board", "geobrick-lv-4") as server, Page() as page:
+        page.show(server.address)
+        page.until("latest && at('link').textContent === 'connected'", "the page is connected")
+        page.type("line", "say", "P1=\u00e4")
+        page.until(refusals + ".some(l => l.includes('255 characters of ASCII'))", "no ASCII")
+        page.type("item", "add", "P(" + 60 * "(" + ")")  # the controller refuses it, and what is behind it goes on
+        page.type("item", "add", "P2")
+        page.type("line", "say", "P2=7")
+        page.until("document.querySelector('#watched tr:nth-child(2) td:nth-child(2)').textContent === '7'", "P2")
+        server.process.send_signal(signal.SIGSTOP)  # so that all of them are there at once
+        page.value("for (let i = 0; i < 40; i++) say('P1..200')")
+        server.process.send_signal(signal.SIGCONT)
+        page.until(refusals + ".some(l => l.includes('16 commands wait'))", "too many")
+        page.until("waiting.size === 0", "all are answered")
+        page.type("line", "say", "I900=1 I1200=1")
+        page.until("document.querySelectorAll('.motor').length === 3", "motors 1, 9 and 12")
+        for motor in (9, 12):
+            page.value(f"document.querySelector('[data-motor=\"{motor}\"] .name button').click()")
+            page.until(f"at('status-of').value === 'motor {motor}'", "its status words")
+            check("no channel" in page.value("at('pins').textContent"), f"motor {motor}: its pins")
+            shown = page.value("document.body.innerText")
+            check(not [word for word in ("undefined", "NaN", "null") if word in shown], shown)
+        server.end()
+        page.until("at('link').textContent === 'not connected'", "the end")
+        page.value("at('said').replaceChildren()")
+        page.type("line", "say", "ver")
+        page.until(refusals + ".join() === 'not connected'", "nobody there")
 
 
 def page_read_only_in_browser():

@@ -54,6 +54,14 @@ def status_of(answer):
     return int(answer.split(b" ", 2)[1]) if answer.startswith(b"HTTP/1.1 ") else None
 
 
+def frame(data, opcode=1, final=True):
+    mask, size = os.urandom(4), len(data)
+    length = bytes([0x80 | size]) if size < 126 else struct.pack(">BH", 0xFE, size) if size < 65536 else \
+        struct.pack(">BQ", 0xFF, size)
+    masked = bytes(b ^ mask[i % 4] for i, b in enumerate(data))
+    return bytes([(0x80 if final else 0) | opcode]) + length + mask + masked
+
+
 class WebSocket:
     """`refused`: the status of HTTP that it was not opened with, or None."""
 
@@ -76,11 +84,7 @@ class WebSocket:
         self.sock.close()
 
     def frame(self, data, opcode=1, final=True):
-        mask, size = os.urandom(4), len(data)
-        length = bytes([0x80 | size]) if size < 126 else struct.pack(">BH", 0xFE, size) if size < 65536 else \
-            struct.pack(">BQ", 0xFF, size)
-        masked = bytes(b ^ mask[i % 4] for i, b in enumerate(data))
-        self.sock.sendall(bytes([(0x80 if final else 0) | opcode]) + length + mask + masked)
+        self.sock.sendall(frame(data, opcode, final))
 
     def send(self, message):
         self.frame(json.dumps(message).encode())

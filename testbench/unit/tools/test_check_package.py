@@ -8,7 +8,7 @@ import unittest
 from tree import TOOLS, Tree
 
 sys.path.insert(0, str(TOOLS))
-from check_package import pins_of, waveform
+from check_package import other_pages, pins_of, waveform
 
 MD = ".md"
 
@@ -158,6 +158,25 @@ class Waveform(Tree):
     def test_an_encoder_that_lacks_a_change_and_another_unit_fail(self):
         self.assertIn("quarters [20, 19], expected [20, 20]", self.wrong(quarters=39))
         self.assertIn("unit ns, expected ps", self.wrong(unit="ns"))
+
+
+class Pages(Tree):
+    def install(self, name):
+        self.write(f"share/doc/brick/{name}", (TOOLS.parent / name).read_text())
+
+    def test_pages_of_the_tree_are_taken(self):
+        self.install("README.md")
+        self.install("docs/packages.md")
+        for made in ("licences/brick.spdx.json", "copyright", "changelog.gz"):
+            self.write(f"share/doc/brick/{made}", "made")
+        self.assertEqual([*other_pages(self.root)], [])
+
+    def test_others_are_named(self):
+        self.install("README.md")
+        self.write("share/doc/brick/LICENSE", "other")
+        self.write("share/doc/brick/registers/index.html", "made before")
+        self.assertEqual([problem.split(":")[0] for problem in other_pages(self.root)],
+                         ["share/doc/brick/LICENSE", "share/doc/brick/registers/index.html"])
 
 
 if __name__ == "__main__":

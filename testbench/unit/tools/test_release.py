@@ -1,5 +1,6 @@
 """What tools/release.py refuses, and what it calls different."""
 
+import contextlib
 import gzip
 import io
 import json
@@ -9,6 +10,7 @@ import sys
 import tarfile
 import tempfile
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -87,6 +89,59 @@ class Release(unittest.TestCase):
             (place / release.SUMS).write_text(release.checksums(place))
         found = release.differences(self.folder / "one", self.folder / "other")
         self.assertEqual([problem.split(":")[0] for problem in found], ["brick.deb"])
+
+    def released(self, folder, *options, wheel="a wheel", lintian=()):
+        """Exit status and output of all of main(), with packages that are made at once and a tree as its commit."""
+        def make(_, work):
+            files = [work / "brick_pmac-1-py3-none-any.whl", work / "brick_1_amd64.deb", work / "brick-dev_1_amd64.deb"]
+            for file in files:
+                file.write_text(wheel)
+            return files[0], files[1:]
+
+        def licences(*command):
+            command[-1].mkdir()
+            (command[-1] / "brick.spdx.json").write_text("{}")
+
+        results = self.folder / "results"
+        results.mkdir(exist_ok=True)
+        for kind in ("html", "xml"):
+            (results / f"report.{kind}").write_text(kind)
+        (results / "report.json").write_text(json.dumps(GOOD))
+        output = io.StringIO()
+        answers = {"rev-parse": b"c0ffee\n", "status": b"", "archive": b"sources"}
+        arguments = ["release.py", self.folder / "build", folder, "--results", results, *options]
+        with unittest.mock.patch.multiple(release.packages, make=make, lintian=lambda _: [*lintian]), \
+                unittest.mock.patch.multiple(release.wheel, run=licences, lacks=lambda _: []), \
+                unittest.mock.patch.object(release, "git", lambda what, *_: answers[what]), \
+                unittest.mock.patch.object(sys, "argv", [str(word) for word in arguments]), \
+                contextlib.redirect_stdout(output):
+            try:
+                release.main()
+            except SystemExit as end:
+                return end.code, output.getvalue()
+        return 0, output.getvalue()
+
+    def test_a_release_is_whole_and_the_next_one_takes_its_place(self):
+        for wheel in ("one", "two"):
+            status, said = self.released(self.folder / "out", wheel=wheel)
+            self.assertEqual(status, 0, said)
+            self.assertEqual((self.folder / "out/brick_1_amd64.deb").read_text(), wheel)
+        names = {file.name for file in (self.folder / "out").iterdir()}
+        version = next(name for name in names if name.endswith(".tar.gz")).removesuffix(".tar.gz")
+        self.assertEqual(names, {
+            release.SUMS, "brick_pmac-1-py3-none-any.whl", "brick_1_amd64.deb", "brick-dev_1_amd64.deb",
+            *(version + end for end in (".tar.gz", ".spdx.json", "-regress.html", "-regress.json", "-regress.xml"))})
+        subprocess.run(["sha256sum", "--check", "--quiet", release.SUMS], cwd=self.folder / "out", check=True)
+        self.assertEqual({file.name for file in self.folder.iterdir()}, {"out", "results"})  # nothing else stays
+
+    def test_two_builds_are_compared(self):
+        self.released(self.folder / "first")
+        self.assertEqual(self.released(self.folder / "second", "--compare", self.folder / "first")[0], 0)
+        status, said = self.released(self.folder / "second", "--compare", self.folder / "first", wheel="other")
+        self.assertEqual((status, said.count("differs from that of")), (1, 3), said)
+
+    def test_a_lintian_error_is_a_problem(self):
+        self.assertEqual(self.released(self.folder / "out", lintian=["E: brick: bad"])[0], 1)
 
     @unittest.skipUnless((ROOT / ".git").exists(), "a tree without git")
     def test_the_archive_of_a_commit_is_the_same_twice_and_whole(self):
