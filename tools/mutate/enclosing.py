@@ -22,6 +22,9 @@ def place(source, spans, start, old, new):
     head = in_common(old, new)
     tail = in_common(old[head:][::-1], new[head:][::-1])
     start, end, new = start + head, start + len(old) - tail, new[head:len(new) - tail]
+    if not new.strip():  # left out, with the spaces beside it or without
+        gone = source[start:end]
+        start, end = start + len(gone) - len(gone.lstrip()), end - len(gone) + len(gone.rstrip())
     around = [span for span in spans if span[0] <= start and end <= span[1]]
     statements = [span for span in around if span[2]]
     if not around:

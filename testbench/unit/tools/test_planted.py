@@ -78,6 +78,8 @@ class Places(unittest.TestCase):
                                                                       True))
         self.assertEqual(span(source, spans, b"sum += i", b"sum -= i"), ("sum += i;", "sum -= i;", True))
         self.assertEqual(span(source, spans, b"return b", b"return a"), ("return b;", "return a;", True))
+        self.assertEqual(span(source, spans, b"sum = 3;\n  for", b"for")[:2], ("sum = 3;", ""))
+        self.assertEqual(span(source, spans, b"sum = 3;\n", b"\n")[:2], ("sum = 3;", ""))
         self.assertEqual(span(source, spans, b"i < b", b"i <= b")[2], True)
 
     def test_each_is_chosen_by_its_number(self):
