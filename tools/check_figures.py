@@ -45,12 +45,6 @@ def check(root):
         if len({value for _, value in shown}) > 1:
             problems.append(f"{what}: " + ", ".join(f"{page} says {value}" for page, value in shown))
 
-    rules = (root / "docs/rules.md").read_text()
-    planted = sum(int(n) for n in re.findall(r"\| planted (\d+)", rules))
-    claimed = figure(root, "docs/rules.md", r"(\d+) misreadings", problems)
-    if claimed is not None and int(claimed) != planted:
-        problems.append(f"docs/rules.md: {claimed} misreadings, but its rows add up to {planted}")
-
     proofs = {path.stem for path in (root / "testbench/formal").glob("*.sv")}
     rows = set(re.findall(r"^\| `(\w+)` \| \d+ \|", (root / "docs/formal.md").read_text(), re.M))
     problems += [f"{name}: proved or in a row of docs/formal.md, but not both" for name in sorted(proofs ^ rows)]

@@ -39,7 +39,8 @@ What stands behind each requirement of `docs/requirements.txt`: the rules of the
 [verification plan](docs/verification-plan.md), the [proofs](docs/formal.md) and the scores by
 [mutants](docs/mutation.md) of the modules that it is made of.
 
-- **rules**: behind each how [its tests hold it](docs/rules.md): how many misreadings were planted and found, how many
+- **rules**: behind each how [its tests hold it](docs/rules.md): how many misreadings are planted, how many of earlier
+  ones were not kept (lost), how many
   rows were read only, how many are open.
 - **tests**: benches by name, the others counted; all by name in [traceability](docs/traceability.md). A test has passed
   when it has on each engine that it ran on.
@@ -89,7 +90,8 @@ def held(citation, rows):
     whole = f"{sheet}:{section}"
     hows = [how for sections, how in rows if any(s == whole or s.startswith(whole + ".") for s in sections)]
     planted = sum(int(n) for how in hows for n in re.findall(r"planted (\d+)", how))
-    counts = {"planted": planted, **{word: sum(word in how for how in hows) for word in ("read", "open")}}
+    lost = sum(int(m) - int(n) for how in hows for n, m in re.findall(r"planted (\d+) of (\d+)", how))
+    counts = {"planted": planted, "lost": lost, **{word: sum(word in how for how in hows) for word in ("read", "open")}}
     return ", ".join(f"{what} {count}" for what, count in counts.items() if count) or "in no row"
 
 

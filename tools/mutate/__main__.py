@@ -9,6 +9,8 @@
                                    mutant; --release: and each survivor has one
   mutate again [--count 20]        mutants that the results have as killed; each must die again.
                                    Without a name of one module of RTL or firmware
+  mutate planted [N...]            bugs in rules (tools/mutate/planted): the test of each finds it; --count N: of one
+                                   program's; --check: that they apply and docs/rules.md counts them; --write: that
 Exit status: 0 done, 1 number 0 fails, something cannot be built or a check fails, 2 there is no such thing.
 """
 
@@ -19,6 +21,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 
+import bugs
 import plan
 import report
 from common import ROOT, skip
@@ -40,9 +43,10 @@ def positive(text):
 def arguments():
     parser = argparse.ArgumentParser(prog="./dev mutate", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", help="rtl, model, firmware, host, report or again")
-    parser.add_argument("names", nargs="*", metavar="NAME", help="modules, folders; all when none is given")
-    parser.add_argument("--seed", type=int, help="of the drawing (1; again: the commit)")
+    parser.add_argument("kind", help="rtl, model, firmware, host, report, again or planted")
+    parser.add_argument("names", nargs="*", metavar="NAME",
+                        help="modules, folders, numbers of planted bugs; all when none is given")
+    parser.add_argument("--seed", type=int, help="of the drawing (1; again, planted: the commit)")
     parser.add_argument("--count", type=positive, help="mutants a module that are not proved equal (150; again: 20)")
     parser.add_argument("--all", action="store_true", help="every mutant of the module")
     parser.add_argument("--changed", action="store_true", help="modules whose results are of other inputs")
@@ -50,12 +54,13 @@ def arguments():
     parser.add_argument("--resume", action="store_true", help="keep what stands in the results for the same inputs")
     parser.add_argument("--control", type=int, default=50, metavar="N",
                         help="killed mutants that the filter must not prove equal (50)")
-    parser.add_argument("--check", action="store_true", help="report: write nothing")
+    parser.add_argument("--check", action="store_true", help="report, planted: write nothing")
+    parser.add_argument("--write", action="store_true", help="planted: its counts into docs/rules.md")
     parser.add_argument("--release", action="store_true", help="report: open survivors fail")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release", help="the built tree")
     parser.add_argument("--jobs", type=positive, default=int(os.environ.get("BRICK_JOBS", os.cpu_count() or 2)))
     options = parser.parse_args()
-    if options.seed is None and options.kind != "again":
+    if options.seed is None and options.kind not in ("again", "planted"):
         options.seed = 1
     if options.all and options.count:
         parser.error("--all and --count: one of them")
@@ -92,13 +97,25 @@ def run(modules, options):
     return max([status_of(module.name, judge, module) for module in modules], default=0)
 
 
+def run_planted(options):
+    if options.check or options.write:
+        return bugs.tidy(ROOT, options.write)
+    try:
+        import planted
+    except ImportError as missing:
+        skip(f"{missing.name} is not installed (./dev setup)")
+    return planted.main(options)
+
+
 def main():
     options = arguments()
     try:
         if options.kind == "report":
             sys.exit(report.main(options.check, options.release))
+        if options.kind == "planted":
+            sys.exit(run_planted(options))
         modules = plan.choose(options.kind, options.names)
-    except plan.Unknown as unknown:
+    except (plan.Unknown, bugs.Bad) as unknown:
         print(f"mutate: {unknown}", file=sys.stderr)
         sys.exit(2)
     sys.exit(run(modules, options))

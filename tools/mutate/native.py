@@ -118,15 +118,7 @@ class Judge:
         folder, program = self.out / "tests", self.programs[name]
         folder.mkdir(parents=True, exist_ok=True)
         one = overlay.Overlay(self.tree, folder, self.replaced, list(self.kind.flags), self.out / "source", self.root)
-        return one.build(program, False, [self.recorder(program)])
-
-    def recorder(self, program):
-        """reached.cpp, compiled as the program's own files are."""
-        command = next(c for c in program.compiles.values()
-                       if c[c.index("-c") + 1].endswith((".cpp", ".cxx")) and "c++-header" not in c)
-        made = self.out / "reached.o"
-        overlay.run([*plain(command, TOOLS / "reached.cpp", made), f"-DBRICK_MUTANTS={len(self.mutants)}"], self.tree)
-        return str(made)
+        return one.build(program, False, [recorder(program, len(self.mutants), self.out)])
 
     def run(self, binary, tests, number, limit, compare, **more):
         return runner.run(binary, tests, number, limit, compare, self.root, **self.kind.more, **more)
@@ -243,6 +235,15 @@ def locked(folder):
     except OSError as held:
         raise runner.BadBuild(f"{folder}: another ./dev mutate is at work there") from held
     return lock
+
+
+def recorder(program, mutants, out):
+    """reached.cpp, compiled as the program's own files are."""
+    command = next(c for c in program.compiles.values()
+                   if c[c.index("-c") + 1].endswith((".cpp", ".cxx")) and "c++-header" not in c)
+    made = out / "reached.o"
+    overlay.run([*plain(command, TOOLS / "reached.cpp", made), f"-DBRICK_MUTANTS={mutants}"], program.tree)
+    return str(made)
 
 
 def parser_options(command):

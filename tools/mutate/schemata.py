@@ -9,8 +9,9 @@ class Verilog:
     """The number is a variable of a package, read from the environment when the model is made. Only Verilator reads
     this text: $c32 is its way into C++."""
 
-    head = ('package mutant_pkg;\n  int unsigned number = $c32("(std::getenv(\\"BRICK_MUTANT\\") ? '
-            'std::atoi(std::getenv(\\"BRICK_MUTANT\\")) : 0)");\nendpackage\n')
+    head = ('`ifndef MUTANT_PKG\n`define MUTANT_PKG\npackage mutant_pkg;\n'  # once, of files that are read together
+            '  int unsigned number = $c32("(std::getenv(\\"BRICK_MUTANT\\") ? '
+            'std::atoi(std::getenv(\\"BRICK_MUTANT\\")) : 0)");\nendpackage\n`endif\n')
     number = "mutant_pkg::number"
 
     def expression(self, mutants, inner):
@@ -18,8 +19,8 @@ class Verilog:
         return f"({chosen}({inner}))"
 
     def statement(self, mutants, inner):
-        wanted = " && ".join(f"{self.number} != {m.number}" for m in mutants)
-        return f"begin if ({wanted}) {inner} end"
+        chosen = "".join(f"if ({self.number} == {m.number}) begin {m.place.new} end else " for m in mutants)
+        return f"begin {chosen}{inner} end"
 
 
 class C:
@@ -35,8 +36,8 @@ class C:
         return f"({chosen}({inner}))"
 
     def statement(self, mutants, inner):
-        wanted = " && ".join(f"!brick_mutant({m.number})" for m in mutants)
-        return f"{{ if ({wanted}) {inner} }}"
+        chosen = "".join(f"if (brick_mutant({m.number})) {{ {m.place.new} }} else " for m in mutants)
+        return f"{{ {chosen}{inner} }}"
 
 
 def write(source, mutants, language):

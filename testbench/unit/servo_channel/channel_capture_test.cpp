@@ -30,18 +30,24 @@ TEST_F(ChannelTest, EveryTriggerCodeNeedsItsOwnLevels) {
   for (unsigned select = 0; select < 4; ++select) {
     for (unsigned code = 0; code < 16; ++code) {
       if ((code & 3) == 0) continue;
-      for (unsigned levels = 0; levels < 4; ++levels) {  // bit 0 index, bit 1 flag, from their opposites to these
-        const unsigned flag = kHmfl + select;
-        rig_.in.pins[1] = ((levels & 1) != 0 ? 0 : 1u << kC) | ((levels & 2) != 0 ? 0 : 1u << flag);
-        control(2, code << field::kCaptureSource.lsb | field::kFlagSelect.at(select));
-        rig_.ticks(kHold);
-        rig_.read(2, words::kFlagPosition);
-        rig_.in.pins[1] = ((levels & 1) != 0 ? 1u << kC : 0) | ((levels & 2) != 0 ? 1u << flag : 0);
-        rig_.ticks(kHold);
-        const bool index = ((levels & 1) != 0) != ((code & 4) != 0), level = ((levels & 2) != 0) != ((code & 8) != 0);
-        const bool expected = (code & 3) == 1 ? index : (code & 3) == 2 ? level : index && level;
-        EXPECT_EQ(bool{status(2, status_bit::kCaptured)}, expected)
-            << "code " << code << " flag " << select << " levels " << levels;
+      const unsigned idle = code >> 2;                   // the levels at which neither is true
+      for (unsigned levels = 0; levels < 4; ++levels) {  // bit 0 index, bit 1 flag
+        for (const unsigned before : {levels ^ 3u, idle}) {
+          const unsigned flag = kHmfl + select;
+          const auto pins = [&](unsigned of) {
+            return ((of & 1) != 0 ? 1u << kC : 0) | ((of & 2) != 0 ? 1u << flag : 0);
+          };
+          rig_.in.pins[1] = pins(before);
+          control(2, code << field::kCaptureSource.lsb | field::kFlagSelect.at(select));
+          rig_.ticks(kHold);
+          rig_.read(2, words::kFlagPosition);
+          rig_.in.pins[1] = pins(levels);
+          rig_.ticks(kHold);
+          const bool index = ((levels ^ idle) & 1) != 0, level = ((levels ^ idle) & 2) != 0;
+          const bool expected = (code & 3) == 1 ? index : (code & 3) == 2 ? level : index && level;
+          EXPECT_EQ(bool{status(2, status_bit::kCaptured)}, expected)
+              << "code " << code << " flag " << select << " levels " << before << " to " << levels;
+        }
       }
     }
   }
@@ -151,6 +157,7 @@ TEST_F(ChannelTest, CompareTogglesWhenLeftAndMovesTheOther) {
   EXPECT_TRUE(equ(1)) << "1000 -> 1001";
   EXPECT_TRUE(status(1, status_bit::kEqu));
   EXPECT_EQ(rig_.peek(1, words::kCompareB), 1010u);
+  EXPECT_EQ(rig_.peek(1, words::kCompareA), 1000u) << "the one that is left stays";
   steps(1, 9, true);
   EXPECT_TRUE(equ(1));
   step(1, true);
@@ -172,6 +179,11 @@ TEST_F(ChannelTest, CompareStepsBackWhenMovingDown) {
   step(1, false);
   EXPECT_TRUE(equ(1));
   EXPECT_EQ(rig_.peek(1, words::kCompareB), 93u);
+  rig_.write(1, words::kCompareA, 100);
+  rig_.write(1, words::kCompareB, 4);
+  step(1, false);
+  EXPECT_FALSE(equ(1));
+  EXPECT_EQ(rig_.peek(1, words::kCompareA), 93u);
 }
 
 TEST_F(ChannelTest, BothComparesEqualCancelAndBothStep) {

@@ -26,11 +26,11 @@ TEST_F(ChannelCompareTest, WritingNeverTurnsEqu) {
   for (const bool level : {false, true}) {
     control(1, kX4 | kEquWrite | (level ? kEquState : 0));
     for (const std::uint32_t value : {3u, 4u, 5u, kFar}) {
-      place(value, kFar, 4);
-      place(kFar, value, 4);
-      place(value, value, 0);
-      rig_.ticks(4 * kSclk);
-      EXPECT_EQ(bool{equ(1)}, level) << value;
+      for (const auto& [a, b] : {std::pair{value, kFar}, {kFar, value}, {value, value}}) {
+        place(a, b, a == b ? 0 : 4);
+        rig_.ticks(4 * kSclk);
+        EXPECT_EQ(bool{equ(1)}, level) << a << ' ' << b;
+      }
     }
   }
 }

@@ -20,7 +20,7 @@ class SignOff(Tree):
         super().setUp()
         self.write("docs/requirements.txt", "BREQ-1 | R | a line takes BREQ low\nBREQ-2 | R | BREQ returns high\n")
         self.write("docs/requirement-rules.txt", "BREQ-1: host-bus:5.3\nBREQ-2: none, it is a tool's\n")
-        self.write("docs/rules.md", "| host-bus:5.2/1 to host-bus:5.4/2 | `Breq.FallsOnALine` | planted 7 |\n"
+        self.write("docs/rules.md", "| host-bus:5.2/1 to host-bus:5.4/2 | `Breq.FallsOnALine` | planted 7 of 9 |\n"
                                     "| host-bus:5.3/1 | `Breq.FallsOnALine` | read |\n"
                                     "| host-bus:5.6/1 | - | planted 3 |\n")
         self.write("docs/claimed.txt", "BREQ-1\n")
@@ -50,7 +50,7 @@ class SignOff(Tree):
 
     def test_a_row_brings_together_what_stands_behind_a_requirement(self):
         self.expect(self.run_tool("signoff.py"), 0, "clean")
-        self.assertIn("| BREQ-1 | yes | host-bus:5.3 (planted 7, read 1) | 1 tests<br>1 of 1 passed | "
+        self.assertIn("| BREQ-1 | yes | host-bus:5.3 (planted 7, lost 2, read 1) | 1 tests<br>1 of 1 passed | "
                       "`breq: lines, I17=*`: 4 of 4 | `breq` 2 | `breq` 90.0 % | tests abcdef0123<br>covers fedcba9876"
                       "<br>scores 1234567890 |", self.page())
         self.assertIn("| BREQ-2 | no | none, it is a tool's | none | `breq: lines, I17=*`: 4 of 4 | `breq` 2 | "
