@@ -4,6 +4,7 @@ kills is compiled alone: where the object code is that of the original it is no 
 import collections
 import dataclasses
 import fcntl
+import functools
 import shlex
 import subprocess
 import threading
@@ -142,11 +143,14 @@ class Judge:
             for number in numbers:
                 self.reached[stage, int(number)].append((int(ms), tests.program, test))
 
-    def calls(self, stage, number):
-        """[(Tests, the ms that they take of number 0)]: the quick ones of all programs, then the others; the program of
-        which least time is needed comes first."""
+    def calls(self, stage, number, first=""):
+        """[(Tests, the ms that they take of number 0)]: `first`, then the quick ones of all programs, then the others;
+        the program of which least time is needed comes first."""
         groups = collections.defaultdict(list)
         for ms, name, test in sorted(self.reached[stage, number]):
+            if f"{name}: {test}" == first:
+                yield Tests(name, test), ms
+                continue
             groups[(ms >= QUICK, name)].append((ms, test))
         order = sorted(groups.items(), key=lambda item: (item[0][0], sum(ms for ms, _ in item[1]), item[0][1]))
         for (_, name), group in order:
@@ -154,12 +158,14 @@ class Judge:
                 part = group[at:at + NAMES]
                 yield Tests(name, ":".join(test for _, test in part)), sum(ms for ms, _ in part)
 
-    def by_tests(self, stage, compare, mutant):
+    def by_tests(self, stage, compare, mutant, first=""):
         """By those that come to it; killed by none where there are none."""
         self.build()
         seconds, verdict = 0.0, Verdict(ALIVE, "", 0.0)
-        for tests, ms in self.calls(stage, mutant.number):
-            verdict = self.run(self.built[tests.program], tests, mutant.number, 5 + ms / 100, compare)
+        for tests, ms in self.calls(stage, mutant.number, first):
+            one = functools.partial(self.run, self.built[tests.program], number=mutant.number, limit=5 + ms / 100,
+                                    compare=compare)
+            verdict = runner.confirmed(one, tests)
             seconds += verdict.seconds
             if verdict.status != ALIVE:
                 break
@@ -219,9 +225,10 @@ class Judge:
             raise overlay.NoBuild(f"{shlex.join(words)}\n{done.stderr[-2000:]}")
         return (folder / "alone.o").read_bytes()
 
-    def judge(self, mutant):
-        """(stage, verdict). What lock-step alone kills has stage 'slip' and counts as alive for the score."""
-        killed = self.by_tests("tests", self.kind.compare, mutant)
+    def judge(self, mutant, first=""):
+        """(stage, verdict). What lock-step alone kills has stage 'slip' and counts as alive for the score. `first`:
+        the test to begin with, as `by` of a verdict names it."""
+        killed = self.by_tests("tests", self.kind.compare, mutant, first)
         if killed.status != ALIVE:
             return "tests", killed
         equal = self.by_filter(mutant)

@@ -283,7 +283,7 @@ class Fresh(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
             records.write(records.path_of("rtl", "m", None), head, [{"number": 1}])
             return session.Session(judge, mock.Mock(**{"part": None, "all": False, "count": None, "seed": 1,
-                                                       **options})).is_fresh()
+                                                       "renew": False, **options})).is_fresh()
 
     def test_results_are_fresh_when_they_are_whole_and_of_the_same_drawing(self):
         head = {"inputs": "x", "done": True, "count": session.DEFAULT_COUNT, "seed": 1}

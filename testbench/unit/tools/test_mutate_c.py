@@ -22,6 +22,7 @@ import again  # noqa: E402
 import c_source  # noqa: E402
 import mutant  # noqa: E402
 import native  # noqa: E402
+import runner  # noqa: E402
 import schemata  # noqa: E402
 
 FILE = b"""#include <stdbool.h>
@@ -140,6 +141,63 @@ int main(int argc, char** argv) {
             self.assertNotIn(str(number("without n--;")), said(0)[2:])
 
 
+class Together(unittest.TestCase):
+    """Tests in one process: A leaves its mark, at which a mutant makes those behind it fail."""
+
+    PROGRAM = """#include <gtest/gtest.h>
+#include <cstdlib>
+static int mutant() { return std::atoi(std::getenv("BRICK_MUTANT")); }
+static bool left;
+TEST(Of, A) { left = true; }
+TEST(Of, B) {
+  EXPECT_FALSE(left && mutant() >= 7 && mutant() <= 9);
+  if (left && mutant() == 10) std::abort();
+}
+TEST(Of, C) { EXPECT_FALSE(left && mutant() == 7); }
+TEST(Of, D) {
+  EXPECT_NE(mutant(), 8);
+  EXPECT_NE(mutant(), 10);
+}
+TEST(Of, E) { EXPECT_NE(mutant(), 9); }
+"""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        path = pathlib.Path(cls.folder.name)
+        (path / "of.cpp").write_text(cls.PROGRAM)
+        subprocess.run(["c++", "-o", "of", "of.cpp", "-lgtest_main", "-lgtest", "-lpthread"], cwd=path, check=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def verdict(self, number, which):
+        self.runs = []
+
+        def run(tests):
+            self.runs.append(tests.filter)
+            return runner.run(pathlib.Path(self.folder.name) / "of", tests, number, 10, "on", self.folder.name)
+
+        verdict = runner.confirmed(run, runner.Tests("of", which))
+        return verdict.status, verdict.by
+
+    def test_what_fails_behind_others_only_kills_nothing(self):
+        self.assertEqual(self.verdict(7, "Of.*"), ("alive", ""))
+        self.assertEqual(self.runs, ["Of.*", "Of.B", "Of.*-Of.A:Of.B"])
+        self.assertEqual(self.verdict(7, "Of.A:Of.B"), ("alive", ""))
+        self.assertEqual(self.verdict(0, "Of.*"), ("alive", ""))
+
+    def test_those_behind_it_may_still_kill(self):
+        self.assertEqual(self.verdict(8, "Of.*"), ("killed", "of: Of.D"))
+        self.assertEqual(self.verdict(9, "Of.*-Of.C"), ("killed", "of: Of.E"))
+        self.assertEqual(self.verdict(10, "Of.*"), ("killed", "of: Of.D"))
+
+    def test_the_first_of_a_process_is_alone(self):
+        self.assertEqual(self.verdict(8, "Of.D:Of.E"), ("killed", "of: Of.D"))
+        self.assertEqual(self.runs, ["Of.D:Of.E"])
+
+
 class Judges(unittest.TestCase):
     def test_quick_tests_come_first_and_those_only_that_come_to_it(self):
         judge = mock.Mock(reached={
@@ -148,6 +206,8 @@ class Judges(unittest.TestCase):
         self.assertEqual([(t.program, t.filter, ms) for t, ms in native.Judge.calls(judge, "tests", 5)],
                          [("a", "A.first:A.quick", 2), ("b", "B.quick", 3), ("a", "A.slow", 900)])
         self.assertEqual(list(native.Judge.calls(judge, "tests", 6)), [])
+        first = [t.filter for t, _ in native.Judge.calls(judge, "tests", 5, "a: A.slow")]
+        self.assertEqual(first, ["A.slow", "A.first:A.quick", "B.quick"])
 
     def test_the_command_of_another_file_takes_no_notes(self):
         words = native.plain(["cc", "-MD", "-MT", "x.o", "-MF", "x.d", "-O1", "-o", "x.o", "-c", "x.c"], "y.c", "y.o")
