@@ -1,5 +1,6 @@
 """Judges the mutants of one folder of C or C++ by the tests that come to them, the quick ones first. What none of them
-kills is compiled alone: where the object code is that of the original it is no mutant."""
+kills is compiled alone: where the object code is that of the original it is no mutant. Of the firmware the rest goes to
+the tests of the image."""
 
 import collections
 import dataclasses
@@ -12,6 +13,7 @@ import time
 
 import c_source
 import cpp_source
+import image
 import overlay
 import runner
 import schemata
@@ -55,6 +57,7 @@ class Judge:
         self.mutants = []
         for file in self.commands:
             self.mutants += self.mutants_in(file, len(self.mutants) + 1)
+        self.image = image.Image(root, tree, self.out / "image", module.image) if module.image else None
         self.lock, self.build_seconds = threading.Lock(), 0.0
         self.replaced, self.built, self.objects = {}, {}, {}
         self.reached = collections.defaultdict(list)  # of a stage and a mutant's number [(ms, program, test)]
@@ -85,7 +88,9 @@ class Judge:
 
     def inputs(self):
         """A hash of all that decides: the folder's files, the programs as built, these tools."""
-        return hash_of(*self.sources.values(), *(self.tree / "bin" / name for name in sorted(self.programs)),
+        programs = sorted({*self.programs, *(tests.program for tests in self.module.image)})
+        images = [self.tree / image.IMAGE] if self.image else []
+        return hash_of(*self.sources.values(), *(self.tree / "bin" / name for name in programs), *images,
                        repr(self.module), *sorted(TOOLS.glob("*.py")), TOOLS / "reached.cpp", TOOLS / "chosen.h")
 
     def write(self, chosen):
@@ -175,12 +180,15 @@ class Judge:
     def again(self, mutant, by):
         """`by`: 'PROGRAM: TEST', which passes with number 0; nothing else is built. None: there is no such test now."""
         name, _, test = by.partition(": ")
-        if name not in self.programs:
-            return None
-        if name not in self.built:
-            self.built[name] = self.program(name)
         tests = Tests(name, test)
-        verdicts = [self.run(self.built[name], tests, n, ZERO_LIMIT, self.kind.compare) for n in (0, mutant.number)]
+        if name in [of_image.program for of_image in self.module.image]:
+            verdicts = self.image.again(mutant, self.sources[mutant.file], tests)
+        elif name in self.programs:
+            if name not in self.built:
+                self.built[name] = self.program(name)
+            verdicts = [self.run(self.built[name], tests, n, ZERO_LIMIT, self.kind.compare) for n in (0, mutant.number)]
+        else:
+            return None
         if verdicts[0].by.endswith(runner.no_test(tests)):
             return None
         if verdicts[0].status != ALIVE:
@@ -235,6 +243,11 @@ class Judge:
         seconds = killed.seconds + equal.seconds
         if equal.status == EQUAL:
             return "filter", dataclasses.replace(equal, seconds=seconds)
+        if self.image:
+            by_image = self.image.judge(mutant, self.sources[mutant.file])
+            seconds += by_image.seconds
+            if by_image.status != ALIVE:
+                return "image", dataclasses.replace(by_image, seconds=seconds)
         slip = self.by_tests("slip", "on", mutant) if self.module.slip else killed
         if slip.status != ALIVE:
             return "slip", dataclasses.replace(slip, seconds=seconds + slip.seconds)

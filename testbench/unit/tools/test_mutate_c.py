@@ -20,6 +20,7 @@ except ImportError as missing:
 
 import again  # noqa: E402
 import c_source  # noqa: E402
+import image  # noqa: E402
 import mutant  # noqa: E402
 import native  # noqa: E402
 import runner  # noqa: E402
@@ -196,6 +197,45 @@ TEST(Of, E) { EXPECT_NE(mutant(), 9); }
     def test_the_first_of_a_process_is_alone(self):
         self.assertEqual(self.verdict(8, "Of.D:Of.E"), ("killed", "of: Of.D"))
         self.assertEqual(self.runs, ["Of.D:Of.E"])
+
+
+class Images(unittest.TestCase):
+    TESTS = runner.Tests("unit_image", "*")
+
+    def setUp(self):
+        self.place = mutant.Place(10, 30, "operator", "", "")
+        self.judge = image.Image(pathlib.Path("/r"), pathlib.Path("/r/build"), pathlib.Path("/out"), (self.TESTS,))
+        self.judge.lines.update({("/r/a.c", 2): {0x10, 0x14}, ("/r/a.c", 3): {0x18}, ("/r/a.c", 9): {0x20},
+                                 ("/r/b.c", 2): {0x30}})
+        self.judge.executed = {(self.TESTS, "A.two"): {0x14, 0x30}, (self.TESTS, "A.three"): {0x18, 0x30},
+                               (self.TESTS, "A.nine"): {0x20}, (self.TESTS, "A.other"): {0x30}}
+
+    def reached(self, line, source):
+        found = self.judge.reached(mutant.Mutant(1, "a.c", line, "", self.place), source)
+        return sorted(found[self.TESTS])
+
+    def test_a_mutant_is_reached_by_tests_that_execute_its_lines(self):
+        self.assertEqual(self.reached(2, b"1\n" + b"2" * 40), ["A.two"])
+        self.assertEqual(self.reached(2, b"1\n" + b"2" * 20 + b"\n" + b"3" * 40), ["A.three", "A.two"])
+
+    def test_one_without_instructions_is_reached_by_all_of_its_file(self):
+        self.assertEqual(self.reached(1, b"1" * 40), ["A.nine", "A.three", "A.two"])
+
+    def test_lines_of_the_listing_are_those_of_the_instructions_below(self):
+        listing = ("/r/c.c:7 (discriminator 2)\n10000000:\tlui\n10000004:\taddi\n/r/c.c:8\n10000008:\tret\n"
+                   "10000010 <main>:\n")
+        with mock.patch.object(image.overlay, "run", lambda *_: listing):
+            self.judge.read_lines()
+        self.assertEqual([self.judge.lines["/r/c.c", n] for n in (7, 8)], [{0x10000000, 0x10000004}, {0x10000008}])
+
+    def test_the_image_judges_what_native_tests_and_the_compiler_leave(self):
+        for by_image, wanted in ((runner.KILLED, "image"), (runner.ALIVE, "")):
+            alive = runner.Verdict(runner.ALIVE, "", 1.0)
+            judge = mock.Mock(sources={"a.c": b""}, module=mock.Mock(slip=()))
+            judge.by_tests.return_value = judge.by_filter.return_value = alive
+            judge.image.judge.return_value = runner.Verdict(by_image, "unit_image: A.two", 2.0)
+            stage, verdict = native.Judge.judge(judge, mock.Mock(file="a.c"))
+            self.assertEqual((stage, verdict.status, verdict.seconds), (wanted, by_image, 4.0))
 
 
 class Judges(unittest.TestCase):
