@@ -5,7 +5,8 @@
   mutate firmware motion           of the firmware
   mutate host library              of the host side: modules.toml has the names
   mutate rtl --changed --resume    modules whose inputs differ from those of their results
-  mutate firmware motion --renew   the mutants of the results once more, each by the test that killed it, else by all
+  mutate firmware motion --renew   the mutants of the results once more, each by the test that killed it, else by all;
+                                   with --resume only those that live, where the sources are the same
   mutate report [--check]          docs/mutation.md from results/mutation; --check: it is fresh, no reason is of a dead
                                    mutant; --release: and each survivor has one
   mutate again [--count 20]        mutants that the results have as killed; each must die again.

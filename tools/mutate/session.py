@@ -35,7 +35,7 @@ class Session:
         self.rows, self.faults, self.begin = {}, [], time.monotonic()
         self.seed, self.count = options.seed, None if options.all else options.count or DEFAULT_COUNT
         self.once = self.read_once() if options.renew else {}
-        self.known, self.whole = self.read_known()
+        self.known, self.whole = self.read_killed() if options.renew else self.read_known()
         self.tree, self.source = tree(), source_hash(ROOT, judge.module)
 
     def read_once(self):
@@ -45,6 +45,12 @@ class Session:
         head, rows = records.read(self.path)
         self.seed, self.count = head["seed"], head["count"]
         return {records.key(row): row for row in rows}
+
+    def read_killed(self):
+        """{number: row} of what other tests have killed of the same sources: numbers are those of the sources."""
+        if not self.once or records.read(self.path)[0]["source"] != source_hash(ROOT, self.judge.module):
+            return {}, False
+        return {row["number"]: row for row in self.once.values() if row["status"] == KILLED}, False
 
     def read_known(self):
         """{number: row} of results that have the same inputs, and whether they are all that is asked for."""
