@@ -5,6 +5,8 @@
   mutate firmware motion           of the firmware
   mutate host library              of the host side: modules.toml has the names
   mutate rtl --changed --resume    modules whose inputs differ from those of their results
+  mutate firmware motion --renew   the mutants of the results once more, each by the test that killed it, else by all;
+                                   with --resume only those that live, where the sources are the same
   mutate report [--check]          docs/mutation.md from results/mutation; --check: it is fresh, no reason is of a dead
                                    mutant; --release: and each survivor has one
   mutate again [--count 20]        mutants that the results have as killed; each must die again.
@@ -52,6 +54,7 @@ def arguments():
     parser.add_argument("--changed", action="store_true", help="modules whose results are of other inputs")
     parser.add_argument("--part", type=part_of, metavar="K/N", help="every Nth of the drawn mutants")
     parser.add_argument("--resume", action="store_true", help="keep what stands in the results for the same inputs")
+    parser.add_argument("--renew", action="store_true", help="judge the mutants of the results, whatever their inputs")
     parser.add_argument("--control", type=int, default=50, metavar="N",
                         help="killed mutants that the filter must not prove equal (50)")
     parser.add_argument("--check", action="store_true", help="report, planted: write nothing")

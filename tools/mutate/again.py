@@ -18,7 +18,7 @@ NAMED = re.compile(r"\S+: [^\s.]+\.\S+$")  # by a test that has a name, not a sa
 def killed_rows(module):
     _, rows = records.of_module(module.kind, module.name)
     return {records.key(row): row for row in rows
-            if row["status"] == KILLED and row["stage"] == "tests" and NAMED.match(row["by"])}
+            if row["status"] == KILLED and row["stage"] in ("tests", "image") and NAMED.match(row["by"])}
 
 
 def choose(modules, picks):

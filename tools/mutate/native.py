@@ -1,9 +1,11 @@
 """Judges the mutants of one folder of C or C++ by the tests that come to them, the quick ones first. What none of them
-kills is compiled alone: where the object code is that of the original it is no mutant."""
+kills is compiled alone: where the object code is that of the original it is no mutant. Of the firmware the rest goes to
+the tests of the image."""
 
 import collections
 import dataclasses
 import fcntl
+import functools
 import shlex
 import subprocess
 import threading
@@ -11,6 +13,7 @@ import time
 
 import c_source
 import cpp_source
+import image
 import overlay
 import runner
 import schemata
@@ -54,6 +57,7 @@ class Judge:
         self.mutants = []
         for file in self.commands:
             self.mutants += self.mutants_in(file, len(self.mutants) + 1)
+        self.image = image.Image(root, tree, self.out / "image", module.image) if module.image else None
         self.lock, self.build_seconds = threading.Lock(), 0.0
         self.replaced, self.built, self.objects = {}, {}, {}
         self.reached = collections.defaultdict(list)  # of a stage and a mutant's number [(ms, program, test)]
@@ -84,7 +88,9 @@ class Judge:
 
     def inputs(self):
         """A hash of all that decides: the folder's files, the programs as built, these tools."""
-        return hash_of(*self.sources.values(), *(self.tree / "bin" / name for name in sorted(self.programs)),
+        programs = sorted({*self.programs, *(tests.program for tests in self.module.image)})
+        images = [self.tree / image.IMAGE] if self.image else []
+        return hash_of(*self.sources.values(), *(self.tree / "bin" / name for name in programs), *images,
                        repr(self.module), *sorted(TOOLS.glob("*.py")), TOOLS / "reached.cpp", TOOLS / "chosen.h")
 
     def write(self, chosen):
@@ -134,11 +140,14 @@ class Judge:
             for number in numbers:
                 self.reached[stage, int(number)].append((int(ms), tests.program, test))
 
-    def calls(self, stage, number):
-        """[(Tests, the ms that they take of number 0)]: the quick ones of all programs, then the others; the program of
-        which least time is needed comes first."""
+    def calls(self, stage, number, first=""):
+        """[(Tests, the ms that they take of number 0)]: `first`, then the quick ones of all programs, then the others;
+        the program of which least time is needed comes first."""
         groups = collections.defaultdict(list)
         for ms, name, test in sorted(self.reached[stage, number]):
+            if f"{name}: {test}" == first:
+                yield Tests(name, test), ms
+                continue
             groups[(ms >= QUICK, name)].append((ms, test))
         order = sorted(groups.items(), key=lambda item: (item[0][0], sum(ms for ms, _ in item[1]), item[0][1]))
         for (_, name), group in order:
@@ -146,12 +155,14 @@ class Judge:
                 part = group[at:at + NAMES]
                 yield Tests(name, ":".join(test for _, test in part)), sum(ms for ms, _ in part)
 
-    def by_tests(self, stage, compare, mutant):
+    def by_tests(self, stage, compare, mutant, first=""):
         """By those that come to it; killed by none where there are none."""
         self.build()
         seconds, verdict = 0.0, Verdict(ALIVE, "", 0.0)
-        for tests, ms in self.calls(stage, mutant.number):
-            verdict = self.run(self.built[tests.program], tests, mutant.number, 5 + ms / 100, compare)
+        for tests, ms in self.calls(stage, mutant.number, first):
+            one = functools.partial(self.run, self.built[tests.program], number=mutant.number, limit=5 + ms / 100,
+                                    compare=compare)
+            verdict = runner.confirmed(one, tests)
             seconds += verdict.seconds
             if verdict.status != ALIVE:
                 break
@@ -161,12 +172,15 @@ class Judge:
     def again(self, mutant, by):
         """`by`: 'PROGRAM: TEST', which passes with number 0; nothing else is built. None: there is no such test now."""
         name, _, test = by.partition(": ")
-        if name not in self.programs:
-            return None
-        if name not in self.built:
-            self.built[name] = self.program(name)
         tests = Tests(name, test)
-        verdicts = [self.run(self.built[name], tests, n, ZERO_LIMIT, self.kind.compare) for n in (0, mutant.number)]
+        if name in [of_image.program for of_image in self.module.image]:
+            verdicts = self.image.again(mutant, self.sources[mutant.file], tests)
+        elif name in self.programs:
+            if name not in self.built:
+                self.built[name] = self.program(name)
+            verdicts = [self.run(self.built[name], tests, n, ZERO_LIMIT, self.kind.compare) for n in (0, mutant.number)]
+        else:
+            return None
         if verdicts[0].by.endswith(runner.no_test(tests)):
             return None
         if verdicts[0].status != ALIVE:
@@ -211,15 +225,21 @@ class Judge:
             raise overlay.NoBuild(f"{shlex.join(words)}\n{done.stderr[-2000:]}")
         return (folder / "alone.o").read_bytes()
 
-    def judge(self, mutant):
-        """(stage, verdict). What lock-step alone kills has stage 'slip' and counts as alive for the score."""
-        killed = self.by_tests("tests", self.kind.compare, mutant)
+    def judge(self, mutant, first=""):
+        """(stage, verdict). What lock-step alone kills has stage 'slip' and counts as alive for the score. `first`:
+        the test to begin with, as `by` of a verdict names it."""
+        killed = self.by_tests("tests", self.kind.compare, mutant, first)
         if killed.status != ALIVE:
             return "tests", killed
         equal = self.by_filter(mutant)
         seconds = killed.seconds + equal.seconds
         if equal.status == EQUAL:
             return "filter", dataclasses.replace(equal, seconds=seconds)
+        if self.image:
+            by_image = self.image.judge(mutant, self.sources[mutant.file])
+            seconds += by_image.seconds
+            if by_image.status != ALIVE:
+                return "image", dataclasses.replace(by_image, seconds=seconds)
         slip = self.by_tests("slip", "on", mutant) if self.module.slip else killed
         if slip.status != ALIVE:
             return "slip", dataclasses.replace(slip, seconds=seconds + slip.seconds)

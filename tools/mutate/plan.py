@@ -24,6 +24,7 @@ class Module:
     board: tuple
     slip: tuple
     files: tuple = ("*",)  # of the folder
+    image: tuple = ()  # of the firmware
 
 
 def tests(entries, sets):
@@ -46,7 +47,8 @@ def read(file=FILE):
         kinds[kind] = {
             name: Module(kind, name, row["file"], tuple(row.get("tops", [name])), row.get("proof", ""),
                          tests(row["opinion"], sets), tests(row.get("board", []), sets),
-                         tests(row.get("slip", []), sets), tuple(row.get("files", ["*"])))
+                         tests(row.get("slip", []), sets), tuple(row.get("files", ["*"])),
+                         tests(row.get("image", []), sets))
             for name, row in modules.items()}
     return kinds
 

@@ -31,8 +31,10 @@ What would the tests notice? A mutant is the source with one place changed: an o
 case item, an enable, a reset, a condition, a statement left out. `./dev mutate rtl NAME` finds the places with slang's
 parser, puts many mutants into one Verilated model, of which a number chooses one, and runs the module's tests on each;
 `./dev mutate firmware FOLDER` does so with Clang's parser, the native build of the firmware and the tests that come to
-the place; `./dev mutate model FOLDER` with the SystemC model, `./dev mutate host NAME` with the host library, the
-Ethernet server and the models of its buses. Number 0 is the source as it is and passes. The first failure stops.
+the place, then, of what they leave, with the image that is linked with the mutant and its tests on the CPU model;
+`./dev mutate model FOLDER` with the SystemC model, `./dev mutate host NAME` with the host library, the Ethernet server
+and the models of its buses. Number 0 is the source as it is and passes. The first failure stops; behind other tests in
+one process it counts when that test fails alone, too.
 
 - **score**: killed of killed and alive. A mutant of RTL or of the model stands in that engine alone and every
   comparison of the two is off: the tests have values of their own, the proof has its rules. This holds when both sides

@@ -84,13 +84,16 @@ class Judge:
             raise BadBuild(f"number 0, the module as it is, does not pass: {verdict.by}")
         if stage.compare == "off":
             controls = runner.failures(binary, tests, ZERO_LIMIT, self.root)
-            left_out = ("" if not controls else ":" if "-" in tests.filter else "-") + ":".join(controls)
-            self.filters[(stage.name, tests)] = dataclasses.replace(tests, filter=tests.filter + left_out)
+            self.filters[(stage.name, tests)] = tests.without(controls)
         self.limits[(stage.name, tests)] = 5 + 10 * verdict.seconds
 
     def run(self, stage, tests, number):
         binary, key = self.binaries[(tests.program, stage.boards)], (stage.name, tests)
-        return runner.run(binary, self.filters.get(key, tests), number, self.limits[key], stage.compare, self.root)
+
+        def one(some):
+            return runner.run(binary, some, number, self.limits[key], stage.compare, self.root)
+
+        return runner.confirmed(one, self.filters.get(key, tests))
 
     def by_tests(self, stage, mutant):
         self.build(stage)
@@ -127,7 +130,7 @@ class Judge:
         """`by`: what killed it. All are built and pass at number 0, so all may kill it."""
         return self.by_tests(self.stages[0], mutant)
 
-    def judge(self, mutant):
+    def judge(self, mutant, _first=""):
         """(stage, verdict): of the first that does not leave it alive. What lock-step alone kills has stage 'slip' and
         counts as alive for the score of misreadings."""
         tests, board, slip = self.stages

@@ -1,7 +1,9 @@
 """Runs a test program on one mutant and says what came of it: the first failure stops.
 
 Killed: a failed expectation (a bench's limit in simulated time is one), or a report of an assertion or sanitizer that
-names its place. Wall-time limits and other crashes are neither killed nor alive, but 'outside' the score.
+names its place. Wall-time limits and other crashes are neither killed nor alive, but 'outside' the score. Tests share a
+process here, with CTest each has its own: what a mutant leaves behind may fail a test that has nothing to do with it.
+So a failure behind others counts only when that test fails alone too.
 """
 
 import dataclasses
@@ -28,6 +30,7 @@ class Verdict:
     status: str
     by: str  # the test that failed first, or why it is outside
     seconds: float  # of the processor
+    begun: tuple = ()  # tests, in their order
 
 
 @dataclasses.dataclass(frozen=True)
@@ -37,13 +40,35 @@ class Tests:
     program: str
     filter: str
 
+    def without(self, names):
+        sign = "" if not names else ":" if "-" in self.filter else "-"
+        return dataclasses.replace(self, filter=self.filter + sign + ":".join(names))
+
+
+def confirmed(run, tests):
+    """What `run` says of `tests`; where that is of one behind others, what it says of that one alone. Does it pass
+    then, those that have not begun are run: in another process."""
+    seconds, done = 0.0, ()
+    while True:
+        verdict = run(tests.without(done))
+        seconds += verdict.seconds
+        if done and not verdict.begun:
+            verdict = Verdict(ALIVE, "", 0.0)
+        if len(verdict.begun) > 1 and verdict.status != ALIVE:
+            done += verdict.begun
+            verdict = run(dataclasses.replace(tests, filter=done[-1]))
+            seconds += verdict.seconds
+            if verdict.status == ALIVE:
+                continue
+        return dataclasses.replace(verdict, seconds=seconds)
+
 
 def run(binary, tests, number, limit, compare, folder, **more):
     """`compare`: what rigs with both engines do, see testbench/unit/rtl/comparison.h. `more`: of the environment.
     `limit`: seconds of the processor, so that what else runs on the machine decides nothing."""
     environment = {**os.environ, **more, "BRICK_MUTANT": str(number), "BRICK_COMPARE": compare}
     environment.pop("GTEST_TOTAL_SHARDS", None)
-    command = ["prlimit", f"--cpu={math.ceil(limit)}", str(binary), f"--gtest_filter={tests.filter}", "--gtest_brief=1",
+    command = ["prlimit", f"--cpu={math.ceil(limit)}", str(binary), f"--gtest_filter={tests.filter}",
                "--gtest_fail_fast"]
     with tempfile.TemporaryFile() as said:
         program = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=said,
@@ -56,9 +81,10 @@ def run(binary, tests, number, limit, compare, folder, **more):
         said.seek(0)
         text = said.read().decode(errors="replace")
     seconds = used.ru_utime + used.ru_stime
+    begun = tuple(re.findall(r"\[ RUN      \] (\S+)", text.partition("[  FAILED  ]")[0]))  # it skips the rest
     if program.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
-        return Verdict(OUTSIDE, f"{tests.program}: no end within {limit:.0f} s", seconds)
-    return judge(program.returncode, text, tests, seconds)
+        return Verdict(OUTSIDE, f"{tests.program}: no end within {limit:.0f} s", seconds, begun)
+    return dataclasses.replace(judge(program.returncode, text, tests, seconds), begun=begun)
 
 
 def failures(binary, tests, limit, folder):

@@ -33,9 +33,24 @@ class Session:
         self.path = records.path_of(judge.module.kind, judge.module.name, options.part)
         self.inputs = judge.inputs()
         self.rows, self.faults, self.begin = {}, [], time.monotonic()
-        self.count = None if options.all else options.count or DEFAULT_COUNT
-        self.known, self.whole = self.read_known()
+        self.seed, self.count = options.seed, None if options.all else options.count or DEFAULT_COUNT
+        self.once = self.read_once() if options.renew else {}
+        self.known, self.whole = self.read_killed() if options.renew else self.read_known()
         self.tree, self.source = tree(), source_hash(ROOT, judge.module)
+
+    def read_once(self):
+        """{key: row} of the results, whatever their inputs; their seed and count."""
+        if not self.path.exists():
+            return {}
+        head, rows = records.read(self.path)
+        self.seed, self.count = head["seed"], head["count"]
+        return {records.key(row): row for row in rows}
+
+    def read_killed(self):
+        """{number: row} of what other tests have killed of the same sources: numbers are those of the sources."""
+        if not self.once or records.read(self.path)[0]["source"] != source_hash(ROOT, self.judge.module):
+            return {}, False
+        return {row["number"]: row for row in self.once.values() if row["status"] == KILLED}, False
 
     def read_known(self):
         """{number: row} of results that have the same inputs, and whether they are all that is asked for."""
@@ -44,7 +59,7 @@ class Session:
         head, rows = records.read(self.path)
         if head["inputs"] != self.inputs:
             return {}, False
-        whole = head.get("done", False) and (head["count"], head["seed"]) == (self.count, self.options.seed)
+        whole = head.get("done", False) and (head["count"], head["seed"]) == (self.count, self.seed)
         return {row["number"]: row for row in rows}, whole
 
     def is_fresh(self):
@@ -52,7 +67,12 @@ class Session:
 
     def run(self):
         options = self.options
-        first, rest = draw(self.judge.mutants, self.count, options.seed)
+        first, rest = draw(self.judge.mutants, self.count, self.seed)
+        old = [m for m in self.judge.mutants if m.key in self.once]
+        if old:  # once more; what has gone is drawn anew
+            count = len(first)
+            drawn = [*old, *(m for m in rest + first if m.key not in self.once)]
+            first, rest = drawn[:count], drawn[count:]
         rest = rest[:self.judge.spare]
         if options.part:
             k, n = options.part
@@ -67,7 +87,8 @@ class Session:
             while batch := list(itertools.islice(order, len(first) - self.counted(taken))):
                 taken += batch
                 missing = [m for m in batch if m.number not in self.rows]
-                judged = pool.map(self.judge.judge, missing)
+                by = [self.once[m.key]["by"] if m.key in self.once else "" for m in missing]
+                judged = pool.map(self.judge.judge, missing, by)
                 for done, (mutant, (stage, verdict)) in enumerate(zip(missing, judged, strict=True), 1):
                     self.rows[mutant.number] = records.record(mutant, verdict, stage)
                     if done % SAVE_EVERY == 0:
@@ -83,7 +104,7 @@ class Session:
         """The filter must not prove equal what a test has killed."""
         killed = [m for m in taken
                   if self.rows[m.number]["status"] == KILLED and self.rows[m.number]["stage"] in ("tests", "board")]
-        chosen = random.Random(self.options.seed).sample(killed, min(self.options.control, len(killed)))
+        chosen = random.Random(self.seed).sample(killed, min(self.options.control, len(killed)))
         for mutant, verdict in zip(chosen, pool.map(self.judge.by_filter, chosen), strict=True):
             if verdict.status == EQUAL:
                 self.faults.append(mutant.number)
@@ -91,7 +112,7 @@ class Session:
     def save(self, taken, done=False):
         head = {"module": self.judge.module.name, "file": self.judge.module.file, "inputs": self.inputs,
                 "source": self.source,
-                "seed": self.options.seed, "mutants": len(self.judge.mutants), "count": self.count,
+                "seed": self.seed, "mutants": len(self.judge.mutants), "count": self.count,
                 "done": done, **self.tree,
                 "time": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
                 "build_seconds": round(self.judge.build_seconds, 1),

@@ -159,6 +159,21 @@ TEST_F(AxisMatrix, ArcsByTheirCentre) {
   }
 }
 
+// A centre on the second axis: clockwise from south to west.
+TEST_F(AxisMatrix, ArcsByJ) {
+  ASSERT_EQ(host("I5113=2"), "");
+  for (const char* circle : {"X-10 Y10 J10", "X-10 Y10 I0 J10"}) {
+    motors[0].trajectory = motors[1].trajectory = 0;
+    store(with({"TSEL1 AROT40 TM300 TA20", std::string("CIRCLE1 ") + circle}));
+    double worst = 0;
+    run([&](double) {
+      worst = std::max(worst, std::abs(std::hypot(at(1) / 1000 + 10 * s30, at(2) / 1000 - 10 * c30) - 10));
+    });
+    EXPECT_LT(worst, 1e-3) << circle;
+    stands_at(-10 * c30 - 10 * s30, -10 * s30 + 10 * c30, 0);
+  }
+}
+
 TEST_F(AxisMatrix, AMirrorTurnsArcs) {
   ASSERT_EQ(host("I5113=2"), "");
   store(with({"TSEL1 AROT60 TM300 TA20", "CIRCLE1 X10 Y10 I10 J0"}));

@@ -77,7 +77,7 @@ class KinematicsImage : public ::testing::Test {
   double segments = 0;
   std::uint64_t longest = 0;  // own cycles between two pauses
   std::string longest_at;
-  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+  ImageBoard board{firmware_image(), 0x3};
 };
 
 // With all others beside it, half of the time is for planning: 39,322 cycles a ms.

@@ -58,7 +58,7 @@ class PathsImage : public ::testing::Test {
     EXPECT_EQ(value("M3"), 0) << "it runs on";
     return value("P3");
   }
-  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+  ImageBoard board{firmware_image(), 0x3};
 };
 
 const std::vector<std::string> kCorners = {"LINEAR X.9 Y.2 Z(SIN(P2*10)) A-1 B.3 C.1 U1 V-.5",

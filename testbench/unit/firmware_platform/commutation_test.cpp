@@ -126,6 +126,25 @@ TEST_F(Commutation, SlipTurnsTheFieldOfAnInductionMotor) {
   EXPECT_NEAR(x_word(kPosition), -units, 2.5);
 }
 
+// The gain is a whole number of 2^-40 of a unit for 2^-8 of an output, the nearest.
+TEST_F(Commutation, SlipIsThatOfTheNearestGain) {
+  for (const double steps : {0.3, 0.7, -0.3, -0.7, 1.4, 1.6}) {
+    char slip[40];
+    std::snprintf(slip, sizeof slip, "I178=%.15f", steps / 0x1p32 * 30000 * 2 * kPi / 1000);
+    set("I171=1000 I177=30000");
+    set(slip);
+    enable();
+    stand_at(0);
+    set_y(kPosition, 0);
+    command(32767);
+    phase(1000);
+    const double parts = x_word(kPosition) * 0x1p24 + (*hal_y(kPosition) & HAL_WORD_MASK);
+    const double step = 1000 * 32767.0 * 256 / 65536;  // one of the gain's, in 2^-24 of a unit
+    EXPECT_NEAR(parts, steps * step, step / 2) << steps;
+    enable(false);
+  }
+}
+
 TEST_F(Commutation, MicroStepsTurnByTheOutputAndNotByTheEncoder) {
   set("I196=1 I170=4 I171=65536 I177=8000 I172=512");
   enable();

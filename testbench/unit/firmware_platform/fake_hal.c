@@ -152,8 +152,11 @@ uint32_t hal_cycles(void) {
 uint64_t hal_long_cycles(void) { return cycles; }
 
 /* 1, 2, 3, ... up to their number, with a top byte that a sum of 24 bits must lose. */
+static unsigned image_looks;
+unsigned fake_hal_image_looks(void) { return image_looks; }
 const uint32_t* hal_image(uint32_t* words) {
   static uint32_t image[FAKE_IMAGE_WORDS];
+  ++image_looks;
   for (uint32_t i = 0; i < FAKE_IMAGE_WORDS; ++i) image[i] = 0xA5000000u + i + 1u;
   *words = FAKE_IMAGE_WORDS;
   return image;

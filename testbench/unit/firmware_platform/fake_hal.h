@@ -20,6 +20,7 @@ void fake_hal_set_cycles(uint32_t cycles);
 void fake_hal_pass(uint32_t cycles);     /* time passes */
 void fake_hal_set_look(uint32_t cycles); /* time that a look at the cycle counter takes; 100 after power-on */
 enum { FAKE_IMAGE_WORDS = 1000 };        /* that CHECKSUM adds up: 1, 2, 3, ... in their low 24 bits */
+unsigned fake_hal_image_looks(void);     /* calls of hal_image since the program began */
 enum { FAKE_STACK_WORDS = 256 };         /* of each stack */
 uint32_t* fake_hal_stack(unsigned stack);
 unsigned fake_hal_stack_faults(void);

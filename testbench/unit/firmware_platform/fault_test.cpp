@@ -48,7 +48,7 @@ class Fault : public ::testing::Test {
   std::uint32_t long_word(std::uint32_t address) {
     return board.word(true, address) << 24 | board.word(false, address);
   }
-  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+  ImageBoard board{firmware_image(), 0x3};
 };
 
 TEST_F(Fault, TurnsOutputsOffAndRestartsAndTells) {
@@ -84,7 +84,7 @@ TEST(FaultOfAllIcs, TurnsOffEveryOutputBeforeTheRestart) {
   constexpr std::uint32_t kBases[] = GATE_IC_BASES;
   constexpr unsigned kMissing = 5, kServoIcs = 18;
   constexpr std::uint32_t kOn = SERVO_CHANNEL_CONTROL_AENA_MASK, kCommand = 0x123400;
-  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3FFFFF & ~(1u << kMissing)};
+  ImageBoard board{firmware_image(), 0x3FFFFF & ~(1u << kMissing)};
   ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
   const auto write = [&](char space, std::uint32_t address, std::uint32_t value) {
     char line[40];
@@ -116,7 +116,7 @@ TEST(FaultOfAllIcs, TurnsOffEveryOutputBeforeTheRestart) {
   board.cpu().invalidate_code();
   board.cpu().set_reg(kA1, kNothing);
   board.cpu().set_pc(kPlace);
-  const std::uint32_t start = ElfFile(BRICK_FIRMWARE_ELF).entry();
+  const std::uint32_t start = ElfFile(firmware_image()).entry();
   bool judged = false;
   board.on_instruction = [&] {
     if (judged || board.cpu().pc() != start) return;
@@ -140,7 +140,7 @@ TEST(FaultOfAllIcs, TurnsOffEveryOutputBeforeTheRestart) {
 // A word of a guard is written: found by the next real-time task. Cause 3 is the breakpoint instruction, which the
 // image has for that alone.
 TEST_F(Fault, AStackThatHasUsedItsGuardIsOne) {
-  const ElfFile elf(BRICK_FIRMWARE_ELF);
+  const ElfFile elf(firmware_image());
   unsigned count = 0;
   for (const char* bottom : {"__stack_bottom", "__side_stack_bottom"}) {
     SCOPED_TRACE(bottom);
@@ -159,7 +159,7 @@ TEST_F(Fault, AStackThatHasUsedItsGuardIsOne) {
 // Below the stack of slices there is no memory. With the stack pointer there nothing can be kept: neither what is
 // stored through it nor what an interrupt would save; the fault has another stack.
 TEST_F(Fault, BelowTheStackOfSlicesIsOneAtOnce) {
-  const ElfFile elf(BRICK_FIRMWARE_ELF);
+  const ElfFile elf(firmware_image());
   const std::uint32_t bottom = elf.symbol("__side_stack_bottom").value();
   ASSERT_EQ(bottom, 0x20000000u);
   const struct {

@@ -1,7 +1,11 @@
 #include "testbench/unit/firmware_platform/image_board.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 #include "rtl/regs/brick_regs.h"
 
@@ -12,6 +16,11 @@ constexpr std::uint32_t kPmac = 0xC0000000u, kMainWords = 0x40000;
 constexpr Cycle kDeviceCycles = 9;
 
 }  // namespace
+
+std::string firmware_image() {
+  const char* other = std::getenv("BRICK_IMAGE");
+  return other ? other : BRICK_FIRMWARE_ELF;
+}
 
 ImageBoard::ImageBoard(const std::string& elf, std::uint32_t fitted) : cpu_(this), fitted_(fitted) {
   Cpu::RegionOptions read_only, words;
@@ -28,6 +37,16 @@ ImageBoard::ImageBoard(const std::string& elf, std::uint32_t fitted) : cpu_(this
   image.load(cpu_);
   entry_ = image.entry();
   reset();
+}
+
+ImageBoard::~ImageBoard() {
+  const char* file = std::getenv("BRICK_EXECUTED");
+  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+  if (!file || !test) return;
+  std::ofstream out(file, std::ios::app);
+  out << test->test_suite_name() << '.' << test->name();
+  for (const std::uint32_t address : cpu_.executed()) out << ' ' << address;
+  out << '\n';
 }
 
 void ImageBoard::reset(Cycle clock_phase) {

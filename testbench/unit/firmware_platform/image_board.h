@@ -14,9 +14,15 @@
 
 namespace brick {
 
+// The file that tests run: BRICK_IMAGE of the environment, else that of the build.
+std::string firmware_image();
+
+// At its end it adds a line to the file BRICK_EXECUTED of the environment: the test, the addresses of the instructions
+// that it has executed.
 class ImageBoard : public DeviceBus {
  public:
   ImageBoard(const std::string& elf, std::uint32_t fitted);
+  ~ImageBoard() override;
 
   Result access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) override;
 

@@ -13,7 +13,7 @@ namespace {
 class Image : public ::testing::Test {
  protected:
   void SetUp() override { board.fill_memory(0x5A5A5A); }  // memory holds anything at power-on
-  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+  ImageBoard board{firmware_image(), 0x3};
 };
 
 TEST_F(Image, FirstReplyComesWithin20Milliseconds) {
@@ -84,7 +84,7 @@ TEST_F(Image, DateAndTimeFollowTheCpuClockAndTheImageHasAChecksum) {
   board.run_ms(2100.0);
   EXPECT_EQ(board.send("TODAY TIME\r"), "SAT 01/01/2028\r00:00:00\r\x06");
   // Code and constants, as the file has them: the sum of their words, 24 bits (firmware:6.2).
-  const ElfFile image(BRICK_FIRMWARE_ELF);
+  const ElfFile image(firmware_image());
   const std::uint32_t begin = image.symbol("__code_start").value(), end = image.symbol("__code_end").value();
   std::uint32_t sum = 0, words = 0;
   for (const auto& segment : image.segments())

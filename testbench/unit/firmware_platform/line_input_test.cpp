@@ -28,6 +28,14 @@ TEST(LineInput, ControlYReportsTheLastLineAsItCame) {
   EXPECT_EQ(c.send(longest + "\r\x19"), "\x06" + longest + "\r\x06");
 }
 
+// firmware:6.5: of the line that is reported its sum behind its CR; of what was sent, a control character, none.
+TEST(LineInput, ControlYHasItsChecksums) {
+  Controller c;
+  EXPECT_EQ(c.send("I4=1\r"), std::string("\x06") + static_cast<char>('I' + '4' + '=' + '1'));
+  const std::string line = std::string("I4=1\r") + static_cast<char>('I' + '4' + '=' + '1' + '\r');
+  EXPECT_EQ(c.send("\x19"), line + std::string("\x06\0", 2));
+}
+
 // The queue is a ring of 8192 characters: any of a line may be the first behind its seam.
 TEST(LineInput, EachCharacterKeepsItsPlaceAtTheSeamOfTheQueue) {
   constexpr std::uint32_t kQueue = 8192;

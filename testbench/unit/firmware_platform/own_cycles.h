@@ -14,7 +14,7 @@ namespace brick {
 class OwnCycles {
  public:
   OwnCycles(ImageBoard& board, const std::string& function, const std::string& point, const std::string& step = "")
-      : board_(board), elf_(BRICK_FIRMWARE_ELF) {
+      : board_(board), elf_(firmware_image()) {
     begin_ = *elf_.symbol(function);
     pause_ = *elf_.symbol("slice_pause");
     point_ = *elf_.symbol(point);

@@ -299,6 +299,29 @@ TEST_F(PhaseSearch, StepperWantsAQuarterOfTheWay) {
   }
 }
 
+// motion:3.5/4 and 5: the current lasts as long as the parts do, whenever the background finds that they are over.
+TEST_F(PhaseSearch, TheCurrentEndsWithTheLastPart) {
+  set("I182=0 I173=1000 I174=1");
+  const auto servo = [this](unsigned interrupts) {
+    for (unsigned n = 0; n < interrupts; ++n) {
+      c_.servo(1);
+      phase(kPhasesOfServo);
+    }
+  };
+  for (const unsigned interrupts : {4u, 2u * 256u}) {
+    set(interrupts == 4 ? "I180=0" : "I180=2");
+    ASSERT_TRUE(phasing_begin(0));
+    servo(interrupts);
+    EXPECT_NE(y_word(kOutput), 0) << interrupts;
+    servo(1);
+    EXPECT_TRUE(phasing_is_searched(0));
+    EXPECT_EQ(y_word(kOutput), 0) << interrupts;
+    EXPECT_EQ(y_word(kOutput + 1), 0) << interrupts;
+    phasing_pass();
+    EXPECT_FALSE(phasing_is_searched(0));
+  }
+}
+
 TEST_F(PhaseSearch, AKillEndsTheSearchWithoutAReference) {
   plant::Motor motor = motor_at(100);
   ASSERT_TRUE(phasing_begin(0));

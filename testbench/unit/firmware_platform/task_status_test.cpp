@@ -91,6 +91,20 @@ TEST_F(TaskStatus, DurationIsThatOfAllRealTimeTasksOfThePeriod) {
   EXPECT_EQ(*hal_y(kRealTime), twice);
 }
 
+// BREQ must not wait for it.
+TEST_F(TaskStatus, ChecksumIsNotAddedUpWhileTheHostIsAtALine) {
+  const auto looks = [] {
+    const unsigned before = fake_hal_image_looks();
+    image_checksum_pass();
+    return fake_hal_image_looks() - before;
+  };
+  EXPECT_EQ(looks(), 1u);
+  slice_hurry = 1;
+  EXPECT_EQ(looks(), 0u);
+  slice_hurry = 0;
+  EXPECT_EQ(looks(), 1u);
+}
+
 // 1 + 2 + ... + n, however much of it the background has added already; not while the host is at a line.
 TEST_F(TaskStatus, ChecksumIsTheSameAtAnyTime) {
   for (int pass = 0; pass < 30; ++pass) {

@@ -299,6 +299,7 @@ TEST_F(CubicMoves, AbortOfVirtualAxesIsOnTheCurve) {
                             : t < begin + 100 ? pvt(2.5, 0, 5, 0.01, 100, t - begin)
                                               : pvt(5, 0.01, 7, 0, 100, t - begin - 100);
     EXPECT_NEAR(cs().position[AXIS_X], expected, 1e-9) << when;
+    EXPECT_EQ(cs().position[AXIS_Y], 0.0) << "which stands";
   }
 }
 

@@ -404,6 +404,22 @@ TEST_F(DpramReportsTest, TheBackgroundIsOffBehindTheForegroundToo) {
   EXPECT_EQ(ram.read(DPRAM_MOTOR_READY), 0x5555 | DPRAM_DATA_READY);
 }
 
+// What the RAM holds at a start is left, whatever was on before it.
+TEST_F(DpramReportsTest, AStartLeavesTheRamAsItIs) {
+  for (const char* on : {"I47=1 I48=1", "I47=1 I50=1 I57=1"}) {
+    reports.choose_motors(1);
+    ASSERT_EQ(host(on), "");
+    servo_ticks(3);
+    background(kSettling);
+    ASSERT_TRUE(ready()) << on;
+    platform::reset("$$$");
+    ram.write(DPRAM_MOTOR_READY, 0x5555 | DPRAM_DATA_READY);
+    servo_ticks(3);
+    background(kSettling);
+    EXPECT_EQ(ram.read(DPRAM_MOTOR_READY), 0x5555 | DPRAM_DATA_READY) << on;
+  }
+}
+
 TEST_F(DpramReportsTest, MoreSystemsThanThereAreAreSixteen) {
   ram.write(DPRAM_COMMAND_CONTROL, 0x5A5A);
   reports.choose_systems(255);

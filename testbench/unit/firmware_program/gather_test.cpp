@@ -249,6 +249,7 @@ TEST_F(Gather, CommandsAndTheirErrors) {
   EXPECT_EQ(host("DEF GAT"), "ERR003");
   EXPECT_EQ(host("DELETE GATHER"), "ERR003");
   ASSERT_EQ(host("ENDGATHER ENDGATHER DELETE GATHER"), "");
+  EXPECT_EQ(host("GATHER"), "ERR003") << "what was there has gone";
   ASSERT_EQ(host("DEF GAT GATHER"), "");
   ASSERT_EQ(host("DELETE ALL TEMPS"), "") << "ends it";
   EXPECT_FALSE(gathers());

@@ -49,6 +49,21 @@ TEST_F(HoldsAndAborts, AMotorJoggedAwayFromAHoldAndBackGoesOn) {
   EXPECT_EQ(motors[0].trajectory, position(1000));
 }
 
+TEST_F(HoldsAndAborts, AMotorOfNoSystemNeedsNoWayBack) {
+  fit({"0", "1000X"});
+  store({"TM400 TA20 TS0 X1"});
+  begin();
+  ticks(200);
+  ASSERT_EQ(host("H"), "");
+  ticks(50);
+  ASSERT_EQ(host("#1J:100"), "");
+  ticks(200);
+  ASSERT_EQ(motors[0].trajectory, position(100));
+  EXPECT_EQ(host("R"), "");
+  ticks(400);
+  EXPECT_EQ(motors[1].trajectory, position(1000));
+}
+
 // A program whose last move executes has ended already: R does not begin it anew.
 TEST_F(HoldsAndAborts, RunInTheLastMoveDoesNotRepeatTheProgram) {
   store({"INC TM200 TA20 TS0 X1", "X1"});

@@ -50,7 +50,7 @@ class RotaryImage : public ::testing::Test {
   void accepted(const std::string& line) { ASSERT_EQ(board.send(line + "\r"), "\x06") << line; }
   int lines() { return std::stoi(board.send("PR\r")); }
   bool full() { return (board.send("??\r").at(7) - '0') & 1; }
-  ObservedBoard board{BRICK_FIRMWARE_ELF, 0x3};
+  ObservedBoard board{firmware_image(), 0x3};
 };
 
 TEST_F(RotaryImage, FillsToI17AndDrainsBelowI16) {

@@ -198,6 +198,14 @@ TEST_F(LinearMoves, VelocityLimitStretchesTheMove) {
   follow({changes_of({{4000, 400, 40, 0}}, 40), changes_of({{2000, 400, 40, 0}}, 40)});
 }
 
+// motion:5.2/2: at 0 neither limits; by default the move would be 125 ms long and its changes 80 ms.
+TEST_F(LinearMoves, ZeroIsNoLimit) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I116=0 I117=0"), "");
+  store({"TM100 TA10 TS0", "X4"});
+  follow({changes_of({{4000, 100, 10, 0}}, 10)});
+}
+
 // A short move is so slow that it could stop in itself: with v = d / Tm, Tm = v / Ixx17 + TS.
 TEST_F(LinearMoves, EachMoveCanStopWithinItself) {
   fit({"1000X"});

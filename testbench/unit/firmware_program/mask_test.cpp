@@ -128,9 +128,9 @@ class MaskWatch {
 
 // A host that uses everything: programs, variables of each kind, reports, buffers, SAVE, and lines by chance.
 TEST(Mask, LongestSectionThatHoldsATaskOff) {
-  ImageBoard board(BRICK_FIRMWARE_ELF, 0x3);
+  ImageBoard board(firmware_image(), 0x3);
   ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
-  MaskWatch watch(board, BRICK_FIRMWARE_ELF);
+  MaskWatch watch(board, firmware_image());
   EXPECT_EQ(board.send("I111=0 I112=0 I124=$120001 I192=1 #1J/\r", 30.0), "\x06") << "a motor that nothing turns";
   board.run_ms(10.0);
   for (const char* line : {"&1DEF ROT 2000 B0", "#1->100X+20.5Y-0.25Z+7", "OPEN ROT", "TM20000 X7", "CLOSE", "R"})
@@ -203,10 +203,10 @@ TEST(Mask, LongestSectionThatHoldsATaskOff) {
 
 // Programs read axis definitions at their addresses (docs/variables.md, Live words), and preempt who changes them.
 TEST(Mask, AxisDefinitionsChangeWhileTheRealTimeTaskIsHeldOff) {
-  ImageBoard board(BRICK_FIRMWARE_ELF, 0x3);
+  ImageBoard board(firmware_image(), 0x3);
   ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
   constexpr std::uint32_t kBytes = 88;  // of one: two bools, the system, nine scales, the offset
-  const auto first = ElfFile(BRICK_FIRMWARE_ELF).symbol("axis_definitions");
+  const auto first = ElfFile(firmware_image()).symbol("axis_definitions");
   ASSERT_TRUE(first.has_value());
   const auto* memory = board.cpu().memory(*first, kBytes);
   std::array<std::uint8_t, kBytes> last{};

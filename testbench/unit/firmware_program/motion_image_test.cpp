@@ -2,11 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "testbench/unit/covers.h"
-#include "testbench/unit/firmware_platform/image_board.h"
+#include "testbench/unit/firmware_platform/own_cycles.h"
 
 namespace brick {
 namespace {
@@ -21,7 +22,7 @@ class MotionImage : public ::testing::Test {
     accepted("CLOSE");
   }
   double value(const std::string& name) { return std::stod(board.send(name + "\r")); }
-  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+  ImageBoard board{firmware_image(), 0x3};
 };
 
 TEST_F(MotionImage, FifteenEndlessProgramsLeaveHostWatchdogAndBlending) {
@@ -48,6 +49,22 @@ TEST_F(MotionImage, FifteenEndlessProgramsLeaveHostWatchdogAndBlending) {
   accepted("&1A");
   board.run_ms(4.0);
   EXPECT_EQ(board.send("&1??\r").at(7) & 2, 2) << "in position, while the others go on";
+}
+
+// LONGEST_SECTION of firmware/kernel/slice.c: the plan of a jog is made in slices, too.
+TEST_F(MotionImage, JogsPauseInTime) {
+  accepted("I100=1 I124=$120001 I111=0 I122=20 I119=.1 I120=50 I121=10");
+  board.run_ms(20);
+  OwnCycles own(board, "jog_plan", "own_path_stay", "own_path_stay_for_ever");
+  for (const char* jog : {"#1J+", "J/", "J:1000000", "J-"}) {
+    accepted(jog);
+    board.run_ms(5);
+  }
+  std::printf("%llu between two pauses at %s\n", static_cast<unsigned long long>(own.longest()),
+              own.longest_at().c_str());
+  EXPECT_GE(own.points(), 1u);
+  EXPECT_GE(own.steps(), 1u);
+  EXPECT_LE(own.longest(), 2400u) << own.longest_at();
 }
 
 TEST_F(MotionImage, LoopsWithoutAMoveGoRoundTwiceAnInterrupt) {
@@ -114,7 +131,7 @@ TEST_F(MotionImage, ProtectionDoesNotWaitForI8) {
 // motion:4.3/1: what was captured before is read away when a search begins; a jog leaves it to the user.
 class ReadsOfCapture : public ImageBoard {
  public:
-  ReadsOfCapture() : ImageBoard(BRICK_FIRMWARE_ELF, 0x3) {}
+  ReadsOfCapture() : ImageBoard(firmware_image(), 0x3) {}
   Result access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) override {
     constexpr std::uint32_t kCaptured = 0x78003 * 8 + 4;  // X, behind the base of the PMAC words
     if (!write && address % 0x1000000 == kCaptured) ++reads;

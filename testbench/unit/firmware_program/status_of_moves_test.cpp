@@ -105,6 +105,14 @@ TEST_F(StatusOfMoves, DwellsBlendsAndInPosition) {
   EXPECT_TRUE(bit(2, 17)) << "virtual axes that stand";
 }
 
+// Definitions that no SAVE has kept are gone behind a reset: a system without motors is in position.
+TEST_F(StatusOfMoves, AResetLeavesASystemNoMotors) {
+  fit({"1000X"});
+  EXPECT_FALSE(bit(2, 17));
+  platform::reset("$$$");
+  EXPECT_TRUE(bit(2, 17));
+}
+
 // What has been last shows no more.
 TEST_F(StatusOfMoves, NothingStaysBehindTheEnd) {
   fit({"1000X"});

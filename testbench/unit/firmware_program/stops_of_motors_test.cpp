@@ -224,6 +224,23 @@ TEST_F(StopsOfMotors, MotorsComeIntoPositionWithinIsx81) {
   }
 }
 
+// motion:5.3: RAPID blends with nothing, so what comes behind one waits.
+TEST_F(StopsOfMotors, ARapidMoveIsWaitedForToo) {
+  for (const char* second : {"RAPID X2", "LINEAR TM20 TA10 TS0 X2"}) {
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I122=20 I119=1 I120=20 I121=0 I192=1 I5181=180"), "");
+    store({"RAPID X1", second});
+    begin();
+    ticks(180);  // 50 + 20 ms
+    EXPECT_EQ(motors[0].trajectory, position(1000)) << second;
+    ASSERT_EQ(host("I128=8388607"), "");
+    ticks(200);
+    EXPECT_EQ(motors[0].trajectory, position(2000)) << second;
+    EXPECT_EQ(host("RY$2014"), "0");
+  }
+}
+
 // motion:5.5: with Isx79 = 0 all take as long as the slowest; speeds by Ixx90.
 TEST_F(StopsOfMotors, RapidMovesGoByMotors) {
   fit({"1000X", "1000Y"});

@@ -60,8 +60,8 @@ class Survival : public ::testing::Test {
     RecordProperty("strobe_gap_us", static_cast<int>(board.longest_strobe_gap_ms() * 1000.0));
     expect_stack_room(board.cpu(), elf);
   }
-  const ElfFile elf{BRICK_FIRMWARE_ELF};
-  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+  const ElfFile elf{firmware_image()};
+  ImageBoard board{firmware_image(), 0x3};
 };
 
 // P1 = 28 ASIN(.5) = 28 x 30 degrees.

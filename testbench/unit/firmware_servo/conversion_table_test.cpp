@@ -475,6 +475,13 @@ TEST_F(ConversionTable, AnEntryThatIsCutOffIsNone) {
   EXPECT_EQ(once(191), 7) << "the last line is the table's";
 }
 
+TEST_F(ConversionTable, EachOf192LinesMayBeAnEntry) {
+  c_.line("I8000..8191=$C78000");
+  channel(3, false, 0, 0);
+  conversion_table_servo();
+  for (std::uint32_t line = 0; line < 192; ++line) EXPECT_EQ(signed_result(line), 96) << line;
+}
+
 TEST_F(ConversionTable, OtherLinesDoNotDisturbAnEntry) {
   table("2810F0 018000 D010F0 7FFFFF 100000 4010F0 000001");
   y(kFree, 5);

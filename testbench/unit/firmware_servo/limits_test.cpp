@@ -23,6 +23,22 @@ void expect_ramp(double from, double to, double speed) {
   EXPECT_LE(to - from, way + speed * 2);
 }
 
+// What lookahead asks for: a side without a limit has none.
+TEST_F(MotionLimits, OfTheDesiredPositionByTheirSides) {
+  std::int64_t lowest = 0, highest = 0;
+  EXPECT_FALSE(protection_desired_limits(0, &lowest, &highest));
+  EXPECT_EQ(lowest, INT64_MIN);
+  EXPECT_EQ(highest, INT64_MAX);
+  c_.line("I124=$808001 I141=0 I113=100");
+  EXPECT_TRUE(protection_desired_limits(0, &lowest, &highest));
+  EXPECT_EQ(lowest, INT64_MIN);
+  EXPECT_NEAR(static_cast<double>(highest) / kFine, 100, 0.1);
+  c_.line("I113=0 I114=-100");
+  EXPECT_TRUE(protection_desired_limits(0, &lowest, &highest));
+  EXPECT_NEAR(static_cast<double>(lowest) / kFine, -100, 0.1);
+  EXPECT_EQ(highest, INT64_MAX);
+}
+
 TEST_F(MotionLimits, ASoftwareLimitStopsAJogByIxx15) {
   c_.line("I113=1000 I514=-1000");
   c_.line("#1J+ #5J-");

@@ -48,6 +48,17 @@ TEST_F(LoopWords, WordsOfTheLoop) {
   EXPECT_EQ(word("RY$8B"), 5999 * 32 * 96 - 16777216);
 }
 
+// motion:1.3/2: the loop of a killed motor writes what goes out, nothing.
+TEST_F(LoopWords, OutputOfAKilledMotorIsZero) {
+  c_.line("I130=4000 I131=0 I132=0 I133=0");
+  close(0, 0);
+  cycle(-10 * 32 * 96, 0, 0);
+  ASSERT_LT(std::stol(c_.line("RX$BF")), 0);
+  motor_kill(0);
+  position_loop_servo(0);
+  EXPECT_EQ(c_.line("RX$BF"), "0");
+}
+
 // What the notch is given may be far beyond a word, which shows its end.
 TEST_F(LoopWords, TheWordOfThePidHasAnEnd) {
   c_.line("I130=8388607 I131=0 I132=0 I133=0");

@@ -282,7 +282,7 @@ class Fresh(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
             records.write(records.path_of("rtl", "m", None), head, [{"number": 1}])
             return session.Session(judge, mock.Mock(**{"part": None, "all": False, "count": None, "seed": 1,
-                                                       **options})).is_fresh()
+                                                       "renew": False, **options})).is_fresh()
 
     def test_results_are_fresh_when_they_are_whole_and_of_the_same_drawing(self):
         head = {"inputs": "x", "done": True, "count": session.DEFAULT_COUNT, "seed": 1}
@@ -290,6 +290,21 @@ class Fresh(unittest.TestCase):
         for other in ({"done": False}, {"count": 20}, {"count": None}, {"seed": 2}, {"inputs": "y"}):
             self.assertFalse(self.fresh({**head, **other}), other)
         self.assertTrue(self.fresh({**head, "count": None}, all=True))
+
+    def test_renewed_what_was_killed_stays_while_the_sources_do(self):
+        """Of other inputs; seed and count are those of the results."""
+        rows = [{**Reports.ROW, "number": n, "line": n, "text": str(n), "status": status}
+                for n, status in ((1, "killed"), (2, "alive"), (3, "equal"))]
+        judge = mock.Mock(**{"inputs.return_value": "y"})
+        judge.module.kind, judge.module.name, judge.module.file = "rtl", "m", "rtl/host/pic_8259.sv"
+        options = mock.Mock(part=None, all=False, count=None, seed=1, renew=True)
+        head = {"inputs": "x", "source": "s", "seed": 5, "count": 3}
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
+            records.write(records.path_of("rtl", "m", None), head, rows)
+            for source, kept in (("s", {1}), ("other", set())):
+                with mock.patch.object(session, "source_hash", lambda *_, now=source: now):
+                    one = session.Session(judge, options)
+                self.assertEqual((set(one.known), one.seed, one.count, len(one.once)), (kept, 5, 3, 3))
 
     def test_what_judges_is_an_input(self):
         module = plan.choose("rtl", ["ssi_edges"])[0]

@@ -20,8 +20,10 @@ except ImportError as missing:
 
 import again  # noqa: E402
 import c_source  # noqa: E402
+import image  # noqa: E402
 import mutant  # noqa: E402
 import native  # noqa: E402
+import runner  # noqa: E402
 import schemata  # noqa: E402
 
 FILE = b"""#include <stdbool.h>
@@ -140,6 +142,102 @@ int main(int argc, char** argv) {
             self.assertNotIn(str(number("without n--;")), said(0)[2:])
 
 
+class Together(unittest.TestCase):
+    """Tests in one process: A leaves its mark, at which a mutant makes those behind it fail."""
+
+    PROGRAM = """#include <gtest/gtest.h>
+#include <cstdlib>
+static int mutant() { return std::atoi(std::getenv("BRICK_MUTANT")); }
+static bool left;
+TEST(Of, A) { left = true; }
+TEST(Of, B) {
+  EXPECT_FALSE(left && mutant() >= 7 && mutant() <= 9);
+  if (left && mutant() == 10) std::abort();
+}
+TEST(Of, C) { EXPECT_FALSE(left && mutant() == 7); }
+TEST(Of, D) {
+  EXPECT_NE(mutant(), 8);
+  EXPECT_NE(mutant(), 10);
+}
+TEST(Of, E) { EXPECT_NE(mutant(), 9); }
+"""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        path = pathlib.Path(cls.folder.name)
+        (path / "of.cpp").write_text(cls.PROGRAM)
+        subprocess.run(["c++", "-o", "of", "of.cpp", "-lgtest_main", "-lgtest", "-lpthread"], cwd=path, check=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def verdict(self, number, which):
+        self.runs = []
+
+        def run(tests):
+            self.runs.append(tests.filter)
+            return runner.run(pathlib.Path(self.folder.name) / "of", tests, number, 10, "on", self.folder.name)
+
+        verdict = runner.confirmed(run, runner.Tests("of", which))
+        return verdict.status, verdict.by
+
+    def test_what_fails_behind_others_only_kills_nothing(self):
+        self.assertEqual(self.verdict(7, "Of.*"), ("alive", ""))
+        self.assertEqual(self.runs, ["Of.*", "Of.B", "Of.*-Of.A:Of.B"])
+        self.assertEqual(self.verdict(7, "Of.A:Of.B"), ("alive", ""))
+        self.assertEqual(self.verdict(0, "Of.*"), ("alive", ""))
+
+    def test_those_behind_it_may_still_kill(self):
+        self.assertEqual(self.verdict(8, "Of.*"), ("killed", "of: Of.D"))
+        self.assertEqual(self.verdict(9, "Of.*-Of.C"), ("killed", "of: Of.E"))
+        self.assertEqual(self.verdict(10, "Of.*"), ("killed", "of: Of.D"))
+
+    def test_the_first_of_a_process_is_alone(self):
+        self.assertEqual(self.verdict(8, "Of.D:Of.E"), ("killed", "of: Of.D"))
+        self.assertEqual(self.runs, ["Of.D:Of.E"])
+
+
+class Images(unittest.TestCase):
+    TESTS = runner.Tests("unit_image", "*")
+
+    def setUp(self):
+        self.place = mutant.Place(10, 30, "operator", "", "")
+        self.judge = image.Image(pathlib.Path("/r"), pathlib.Path("/r/build"), pathlib.Path("/out"), (self.TESTS,))
+        self.judge.lines.update({("/r/a.c", 2): {0x10, 0x14}, ("/r/a.c", 3): {0x18}, ("/r/a.c", 9): {0x20},
+                                 ("/r/b.c", 2): {0x30}})
+        self.judge.executed = {(self.TESTS, "A.two"): {0x14, 0x30}, (self.TESTS, "A.three"): {0x18, 0x30},
+                               (self.TESTS, "A.nine"): {0x20}, (self.TESTS, "A.other"): {0x30}}
+
+    def reached(self, line, source):
+        found = self.judge.reached(mutant.Mutant(1, "a.c", line, "", self.place), source)
+        return sorted(found[self.TESTS])
+
+    def test_a_mutant_is_reached_by_tests_that_execute_its_lines(self):
+        self.assertEqual(self.reached(2, b"1\n" + b"2" * 40), ["A.two"])
+        self.assertEqual(self.reached(2, b"1\n" + b"2" * 20 + b"\n" + b"3" * 40), ["A.three", "A.two"])
+
+    def test_one_without_instructions_is_reached_by_all_of_its_file(self):
+        self.assertEqual(self.reached(1, b"1" * 40), ["A.nine", "A.three", "A.two"])
+
+    def test_lines_of_the_listing_are_those_of_the_instructions_below(self):
+        listing = ("/r/c.c:7 (discriminator 2)\n10000000:\tlui\n10000004:\taddi\n/r/c.c:8\n10000008:\tret\n"
+                   "10000010 <main>:\n")
+        with mock.patch.object(image.overlay, "run", lambda *_: listing):
+            self.judge.read_lines()
+        self.assertEqual([self.judge.lines["/r/c.c", n] for n in (7, 8)], [{0x10000000, 0x10000004}, {0x10000008}])
+
+    def test_the_image_judges_what_native_tests_and_the_compiler_leave(self):
+        for by_image, wanted in ((runner.KILLED, "image"), (runner.ALIVE, "")):
+            alive = runner.Verdict(runner.ALIVE, "", 1.0)
+            judge = mock.Mock(sources={"a.c": b""}, module=mock.Mock(slip=()))
+            judge.by_tests.return_value = judge.by_filter.return_value = alive
+            judge.image.judge.return_value = runner.Verdict(by_image, "unit_image: A.two", 2.0)
+            stage, verdict = native.Judge.judge(judge, mock.Mock(file="a.c"))
+            self.assertEqual((stage, verdict.status, verdict.seconds), (wanted, by_image, 4.0))
+
+
 class Judges(unittest.TestCase):
     def test_quick_tests_come_first_and_those_only_that_come_to_it(self):
         judge = mock.Mock(reached={
@@ -148,6 +246,8 @@ class Judges(unittest.TestCase):
         self.assertEqual([(t.program, t.filter, ms) for t, ms in native.Judge.calls(judge, "tests", 5)],
                          [("a", "A.first:A.quick", 2), ("b", "B.quick", 3), ("a", "A.slow", 900)])
         self.assertEqual(list(native.Judge.calls(judge, "tests", 6)), [])
+        first = [t.filter for t, _ in native.Judge.calls(judge, "tests", 5, "a: A.slow")]
+        self.assertEqual(first, ["A.slow", "A.first:A.quick", "B.quick"])
 
     def test_the_command_of_another_file_takes_no_notes(self):
         words = native.plain(["cc", "-MD", "-MT", "x.o", "-MF", "x.d", "-O1", "-o", "x.o", "-c", "x.c"], "y.c", "y.o")
