@@ -73,7 +73,7 @@ module board_chip_ecp5 (
   logic        pa_oe, iochrdy, memcs16_n, phase, phase_q, phase_oe, servo, servo_q, servo_oe;
   logic [1:0]  isa_oe;
   logic [1:0]  unused_line;
-  ecp5_pads #(.Width(24)) u_pa_data (.pad_io(pa_data_io), .d_i(pa_data), .oe_i(pa_oe), .q_o(pa_wdata));
+  ecp5_data_pads u_data (.pad_io(pa_data_io), .d_i(pa_data), .oe_i(pa_oe), .rd_ni(pa_rd_ni), .q_o(pa_wdata));
   for (genvar i = 0; i < 2; i++) begin : gen_isa_sd  // each byte lane
     ecp5_pads #(.Width(8)) u_isa_sd (
       .pad_io(isa_sd_io[8*i+:8]), .d_i(isa_data[8*i+:8]), .oe_i(isa_oe[i]), .q_o(isa_wdata[8*i+:8])

@@ -26,7 +26,7 @@ module servo_ic_chip_ecp5 (
 
   logic [23:0] pa_wdata, pa_data;
   logic        pa_oe, phase, phase_q, phase_oe, servo, servo_q, servo_oe;
-  ecp5_pads #(.Width(24)) u_pa_data (.pad_io(pa_data_io), .d_i(pa_data), .oe_i(pa_oe), .q_o(pa_wdata));
+  ecp5_data_pads u_data (.pad_io(pa_data_io), .d_i(pa_data), .oe_i(pa_oe), .rd_ni(pa_rd_ni), .q_o(pa_wdata));
   ecp5_pads               u_phase   (.pad_io(phase_io), .d_i(phase_q), .oe_i(phase_oe), .q_o(phase));
   ecp5_pads               u_servo   (.pad_io(servo_io), .d_i(servo_q), .oe_i(servo_oe), .q_o(servo));
 

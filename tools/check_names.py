@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A block is found whole under its module's one name: an RTL module with a core of its own has a model in the folder of
-its RTL, a page of docs and tests of that name; a proof has the name of the module that it is about, with _pins where it
-sees that through late pins; a component has that of its block."""
+its RTL, a page of docs and tests of that name; a proof has the name of the module that it is about; a component has
+that of its block."""
 
 import argparse
 import pathlib
@@ -34,7 +34,7 @@ def check(root):
         if not (unit / tests).is_dir() and not list(unit.glob(f"*/{tests}*_test.cpp")):
             problems.append(f"{block}: expected tests at testbench/unit/{tests} or testbench/unit/*/{tests}*_test.cpp")
     for proof in sorted((root / "testbench/formal").glob("*.sv")):
-        if proof.stem.removesuffix("_pins") not in modules:
+        if proof.stem not in modules:
             problems.append(f"testbench/formal/{proof.name}: no module has this name")
     components = [path for path in (root / "systemc/component").glob("*") if path.is_dir() and path.name != "include"]
     for component in sorted(components):

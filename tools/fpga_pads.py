@@ -108,8 +108,8 @@ def bus(name):
 def delays(graph):
     """Of each pad, a bus as one, {kind: the longest way}, and that of the reset. Kinds: "in" to a flip-flop, "through"
     from another pad, "out" from a flip-flop to the level, "enable" to what turns the pad on, "ram" from the dual-ported
-    RAM to either, "off" from /RD to the enable by way of a flip-flop that /RD clears. What a strobe clocks follows no
-    clock and counts nowhere.
+    RAM to either, "gate" from /RD to what turns the pad on, "off" the same by way of a flip-flop that /RD clears. What
+    a strobe clocks follows no clock and counts nowhere.
     """
     nodes = set(graph.after) | set(graph.before)
     flip_flops = {node: delay for node, delay in graph.setup.items() if node[1] != "LSR"}
@@ -125,7 +125,7 @@ def delays(graph):
     to_level = {"out": longest(graph.before, others), "ram": longest(graph.before, ram),
                 "through": longest(graph.before, pads_in)}
     to_enable = {"enable": to_level["out"], "ram": to_level["ram"], "through": to_level["through"],
-                 "off": longest(graph.before, cleared)}
+                 "gate": read, "off": longest(graph.before, cleared)}
     found = collections.defaultdict(dict)
     for node in sorted(nodes):
         if not pad(node[0]):
@@ -153,12 +153,13 @@ def rows(found):
     a_in = worst(found, PORT_A_IN, "in") + PAD_IN + SKEW
     isa_in = worst(found, ISA_IN, "in") + PAD_IN + SKEW
     ta = worst(found, TA, "out", "ram")
+    ends = worst(found, D, "gate") or worst(found, D, "off")  # a gate ends D whatever the flip-flops do
     out = {name: worst(found, name, "out", "enable") + PAD_OUT + SKEW
            for name in (D, "isa_sd_io", "isa_iochrdy_io", MEMCS16)}
     table = [(PORT_A_IN, Row("host-bus:2.6", "pads of Port A to a flip-flop", a_in, TICK)),
              (D, Row("host-bus:2.6", "clock to D, of registers", out[D], TO_PAD)),
              (D, Row("host-bus:2.6/5", "/RD to the end of D, without a clock",
-                     worst(found, D, "off") + PAD_IN + PAD_OUT, TICK)),
+                     ends + PAD_IN + PAD_OUT, TICK)),
              (TA, Row("host-bus:2.6", "clock to /TA", ta + PAD_OUT + SKEW, TO_PAD)),
              (TA, Row("host-bus:6.9/8", "D of the RAM behind /TA, which comes a clock later",
                       worst(found, D, "ram") - ta, BEHIND_TA)),

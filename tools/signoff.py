@@ -152,14 +152,14 @@ def modules_of(files):
 
 
 def read_proofs(root):
-    """({proof: number of its rules}, {module: its proofs}); a proof NAME_pins is of module NAME too."""
+    """({proof: number of its rules}, {module: its proofs})."""
     rules = {path.stem: len(re.findall(r"^ +R\d+: assert", path.read_text(), re.M))
              for path in sorted((root / "testbench/formal").glob("*.sv"))}
     table = root / "tools/mutate/modules.toml"
     listed = tomllib.loads(table.read_text()).get("rtl", {}) if table.exists() else {}
     of_module = collections.defaultdict(list)
     for name in rules:
-        of_module[name.removesuffix("_pins")].append(name)
+        of_module[name].append(name)
     for name, row in listed.items():
         if row.get("proof") and name not in of_module:
             of_module[name].append(row["proof"])

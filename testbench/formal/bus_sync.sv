@@ -38,24 +38,12 @@ module bus_sync_rules (
   input wire logic wdata_i
 );
 
-  // Time: clk_pwm rises with every other step, clk_ref with every third of these.
-  logic [2:0] step_q = 3'd0;
-  logic       clk_pwm_q = 1'b0, clk_ref_q = 1'b0;
-  always @($global_clock) begin
-    step_q    <= (step_q == 3'd5) ? 3'd0 : step_q + 3'd1;
-    clk_pwm_q <= ~clk_pwm_q;
-    clk_ref_q <= step_q < 3'd3;
-  end
+  logic       clk_pwm, clk_ref, edge_pwm;
+  proof_clocks clocks (.clk_pwm_o(clk_pwm), .clk_ref_o(clk_ref), .edge_pwm_o(edge_pwm), .edge_ref_o(), .step_o());
 
-  // Lines at the board: as they were so many steps ago.
-  (* anyconst *) logic [4:0] late;
-  logic [4:0] now, one_q, two_q, there;
-  assign now = {rd_ni, wr_ni, ours_i, addr_i, wdata_i};
-  initial {one_q, two_q} = {2{5'b11000}};
-  always @($global_clock) {one_q, two_q} <= {now, one_q};
-  for (genvar i = 0; i < 5; i++) begin : gen_line
-    assign there[i] = late[i] ? two_q[i] : now[i];
-  end
+  logic [4:0] there;  // the lines at the board
+  late_lines #(.Width(5), .Idle(5'b11000)) lines (.now_i({rd_ni, wr_ni, ours_i, addr_i, wdata_i}), .there_o(there),
+                                                  .late_o());
 
   logic [1:0]  rd_falls, wr_falls, rd_of;
   logic [18:0] addr;
@@ -64,7 +52,7 @@ module bus_sync_rules (
   logic        x, onchip, we, rd;
   bus_strobes strobes (.rst_ni, .pa_rd_ni(there[4]), .pa_wr_ni(there[3]), .rd_falls_o(rd_falls),
                        .wr_falls_o(wr_falls));
-  bus_sync dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .rd_falls_i(rd_falls), .wr_falls_i(wr_falls),
+  bus_sync dut (.clk_pwm_i(clk_pwm), .clk_ref_i(clk_ref), .rst_ni, .rd_falls_i(rd_falls), .wr_falls_i(wr_falls),
                 .pa_rd_ni(there[4]), .pa_wr_ni(there[3]), .pa_addr_i({18'd0, there[1]}), .pa_x_i(1'b0),
                 .pa_aa_i(there[2] ? 4'd2 : 4'd1), .pa_int_i(1'b0), .pa_wdata_i({23'd0, there[0]}),
                 .addr_o(addr), .x_o(x), .aa_o(aa), .int_o(onchip), .wdata_o(wdata), .we_o(we), .rd_o(rd),
@@ -102,8 +90,6 @@ module bus_sync_rules (
   // What has come of the cycle: pulses of we and rd, one clk_pwm each, counted with the edge that ends them.
   logic       write_q = 1'b0, read_q = 1'b0, where_q = 1'b0, data_q = 1'b0;
   logic [1:0] writes_q = 2'd0, reads_q = 2'd0;
-  logic       edge_pwm;
-  assign edge_pwm = ~clk_pwm_q;  // at the end of this step
   always @($global_clock) begin
     if (fall && ours_i) begin
       {write_q, read_q, where_q, data_q} <= {~wr_ni, ~rd_ni, addr_i, wdata_i};

@@ -32,22 +32,16 @@ module clock_select_rules (
   input wire logic        ext_servo_i
 );
 
-  // Time: clk_pwm rises with every other step, clk_ref with every third of these.
-  logic [2:0] step_q = 3'd0;
-  logic       clk_pwm_q = 1'b0, clk_ref_q = 1'b0, edge_ref, started_q = 1'b0;
-  always @($global_clock) begin
-    step_q    <= (step_q == 3'd5) ? 3'd0 : step_q + 3'd1;
-    clk_pwm_q <= ~clk_pwm_q;
-    clk_ref_q <= step_q < 3'd3;
-    started_q <= 1'b1;
-  end
-  assign edge_ref = step_q == 3'd0;  // at the end of this step
+  logic [2:0] step;
+  logic       clk_pwm, clk_ref, edge_ref, started_q = 1'b0;
+  proof_clocks clocks (.clk_pwm_o(clk_pwm), .clk_ref_o(clk_ref), .edge_pwm_o(), .edge_ref_o(edge_ref), .step_o(step));
+  always @($global_clock) started_q <= 1'b1;
   // guarantee: power-on
   always_comb assume (rst_ni == started_q);
 
   logic       phase, servo, conflict;
   logic [4:0] source;
-  clock_select dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .fitted_i, .phase_i, .servo_i, .phase_oe_i,
+  clock_select dut (.clk_pwm_i(clk_pwm), .clk_ref_i(clk_ref), .rst_ni, .fitted_i, .phase_i, .servo_i, .phase_oe_i,
                     .servo_oe_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .phase_o(phase), .servo_o(servo),
                     .phase_source_o(source), .conflict_o(conflict));
   // From inside: who is let onto each net.
@@ -114,7 +108,7 @@ module clock_select_rules (
   assign phase_oe = phase_oe_i & fitted_i;
   assign servo_oe = servo_oe_i & fitted_i;
   always @($global_clock) begin
-    if (!clk_pwm_q && rst_ni) begin
+    if (!clk_pwm && rst_ni) begin
       {ext_phase2_q, ext_phase1_q} <= {ext_phase1_q, ext_phase_i};
       {ext_servo2_q, ext_servo1_q} <= {ext_servo1_q, ext_servo_i};
       differ_q   <= !(phase_differs || servo_differs) ? 2'd0 : differ_q + {1'b0, !differ_q[1]};
@@ -133,7 +127,7 @@ module clock_select_rules (
 
   always @($global_clock) if (rst_ni) begin
     // I1: The clocks are as the steps count.
-    I1: assert (step_q <= 3'd5 && clk_pwm_q == step_q[0] && clk_ref_q == (step_q >= 3'd1 && step_q <= 3'd3));
+    I1: assert (step <= 3'd5 && clk_pwm == step[0] && clk_ref == (step >= 3'd1 && step <= 3'd3));
 
     // I2: Who is let onto the nets is who drove at the last edge of clk_ref.
     I2: assert (\dut.phase_grant_q == (outside_q ? 22'h0 : phase_oe_q & -phase_oe_q) &&

@@ -1,10 +1,12 @@
-// Rules of the dual-ported RAM's arbiter, host-bus:6.9: the two sides never meet in a word, and both come to their
-// turn. That what either reads is what was last written is tested, not proved. A step is half a period of clk_pwm, 4.2
-// ns; a pin of the CPU may change at any, and an edge takes what stood a step before it. Assumed, and all else is free:
+// Rules of the dual-ported RAM's arbiter, host-bus:6.9 and host-bus:2.6/5, at the CPU's pins: the two sides never meet
+// in a word, both come to their turn, and each strobe gets what it asks for. That what either reads is what was last
+// written is tested, not proved. Each line of the CPU comes to the board at once or up to 8.477 ns late (`late_lines`).
+// A pin of the CPU may change at any step, and an edge takes what stood a step before it. Assumed, all else is free:
 // - of the CPU, host-bus:2.2: /RD and /WR are never low together, high and low for a step or more; two falls of one are
-//   four steps apart or more, 17 ns (19.1 ns with the wait states of host-bus:2.5); select and address stand from fall
-//   to rise, the select a step longer (host-bus:2.6/9), write data from 12.7 ns after the fall to the rise; a strobe of
-//   this RAM ends after /TA is low (row 118), of others nothing more is asked. No line is later than another;
+//   four steps apart or more, 17 ns (19.1 ns with the wait states of host-bus:2.5); select and address stand from the
+//   fall to a step after the rise (host-bus:2.6/9), write data from 12.7 ns after the fall to the rise; a strobe of
+//   this RAM is low for seven steps or more, 29.7 ns (row 102: 31.6), and ends after /TA is low (row 118); of others
+//   nothing more is asked;
 // - of isa_slave: its outputs change with clk_ref, direction and address stand from the command's start to the clock
 //   after its end, in which a write may have its strobe (`isa_slave`, R3 and R4). It may end a command at any time,
 //   BUSY or not, with or without a strobe.
@@ -20,21 +22,24 @@
 // fault R6: only a new strobe of this RAM ends the one before (rtl/host/dpram.sv)
 //   - (fallen || !(own_wr_q
 //   + (request || !(own_wr_q
-// fault R9: a write is made though another strobe has fallen since its data were taken (rtl/host/dpram.sv)
-//   - = wr_low2_q & ~wr_new;
-//   + = wr_low2_q;
 // fault R8: the end of /RD does not turn the pins off (rtl/host/dpram.sv)
 //   - rst_ni & ~cpu_rd_ni
 //   + rst_ni
+// fault R9: a write is made though another strobe has fallen since its data were taken (rtl/host/dpram.sv)
+//   - = wr_low2_q & ~wr_new;
+//   + = wr_low2_q;
+// fault R10: /TA falls with the data (rtl/host/dpram.sv)
+//   - (rd_falls_i != rd_ack_q)
+//   + (rd_falls_i != rd_done_q)
 `default_nettype none
 
 module dpram_rules (
   input wire logic        rst_ni,
-  input wire logic        rd_ni,
+  input wire logic        rd_ni,         // as the CPU drives them
   input wire logic        wr_ni,
   input wire logic        sel_i,
   input wire logic [1:0]  addr_i,
-  input wire logic        wdata_i,       // on all lines of D, as the next
+  input wire logic        wdata_i,       // on all lines of D, as that of the host
   input wire logic        host_sel_i,
   input wire logic        host_rd_i,
   input wire logic        host_wr_i,
@@ -43,23 +48,28 @@ module dpram_rules (
   input wire logic        host_wdata_i
 );
 
-  // Time: clk_pwm rises with every other step, clk_ref with every third of these.
-  logic [2:0] step_q = 3'd0;
-  logic       clk_pwm_q = 1'b0, clk_ref_q = 1'b0, edge_ref;
-  always @($global_clock) begin
-    step_q    <= (step_q == 3'd5) ? 3'd0 : step_q + 3'd1;
-    clk_pwm_q <= ~clk_pwm_q;
-    clk_ref_q <= step_q < 3'd3;
-  end
-  assign edge_ref = step_q == 3'd0;  // at the end of this step
+  localparam logic [3:0] Settled = 4'd7;  // steps behind a fall: its lines are there, the remains of others are gone
+
+  logic [2:0] step;
+  logic       clk_pwm, clk_ref, edge_pwm, edge_ref;
+  proof_clocks clocks (.clk_pwm_o(clk_pwm), .clk_ref_o(clk_ref), .edge_pwm_o(edge_pwm), .edge_ref_o(edge_ref),
+                       .step_o(step));
+
+  // Lines at the board, in the order of `there`: /RD, /WR, select, address, data.
+  logic [5:0] there, late;
+  late_lines #(.Width(6), .Idle(6'b110000)) lines (.now_i({rd_ni, wr_ni, sel_i, addr_i, wdata_i}), .there_o(there),
+                                                   .late_o(late));
+  logic [3:0] skew;  // steps that a late line adds
+  assign skew = (late != 6'd0) ? 4'd2 : 4'd0;
 
   logic [1:0]  rd_falls, wr_falls;
   logic        cpu_drive, cpu_wait, cpu_busy, host_busy, host_busy_pin;
   logic [15:0] rdata, host_rdata;
-  bus_strobes strobes (.rst_ni, .pa_rd_ni(rd_ni), .pa_wr_ni(wr_ni), .rd_falls_o(rd_falls), .wr_falls_o(wr_falls));
-  dpram dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .small_i(1'b0), .rd_falls_i(rd_falls),
-             .wr_falls_i(wr_falls), .cpu_sel_i(sel_i), .cpu_x_i(addr_i[0]), .cpu_addr_i({13'd0, addr_i[1]}),
-             .cpu_rd_ni(rd_ni), .cpu_wr_ni(wr_ni), .cpu_wdata_i({16{wdata_i}}), .cpu_rdata_o(rdata),
+  bus_strobes strobes (.rst_ni, .pa_rd_ni(there[5]), .pa_wr_ni(there[4]), .rd_falls_o(rd_falls),
+                       .wr_falls_o(wr_falls));
+  dpram dut (.clk_pwm_i(clk_pwm), .clk_ref_i(clk_ref), .rst_ni, .small_i(1'b0), .rd_falls_i(rd_falls),
+             .wr_falls_i(wr_falls), .cpu_sel_i(there[3]), .cpu_x_i(there[1]), .cpu_addr_i({13'd0, there[2]}),
+             .cpu_rd_ni(there[5]), .cpu_wr_ni(there[4]), .cpu_wdata_i({16{there[0]}}), .cpu_rdata_o(rdata),
              .cpu_drive_o(cpu_drive), .cpu_wait_o(cpu_wait), .cpu_busy_o(cpu_busy),
              .mem_sel_i(host_sel_i), .mem_rd_i(host_rd_i), .mem_wr_i(host_wr_i),
              .mem_addr_i({13'd0, host_addr_i}), .mem_be_i(host_be_i),
@@ -80,21 +90,21 @@ module dpram_rules (
   logic        wdata_q, host_wdata_q;
   logic [15:0] rdata_q;
   logic [2:0]  rd_fell_q = 3'b000, wr_fell_q = 3'b000;
-  logic [2:0]  low_q = 3'd0;  // steps that a strobe has been low
+  logic [3:0]  low_q = 4'd0;  // steps that a strobe has been low
   always @($global_clock) begin
     {started_q, awake_q, rd_nq, wr_nq, wait_q} <= {1'b1, started_q, rd_ni, wr_ni, cpu_wait};
     {sel_q, addr_q, wdata_q, rdata_q} <= {sel_i, addr_i, wdata_i, rdata};
     {host_sel_q, host_rd_q, host_wr_q} <= {host_sel_i, host_rd_i, host_wr_i};
     {host_addr_q, host_be_q, host_wdata_q} <= {host_addr_i, host_be_i, host_wdata_i};
-    low_q <= (rd_ni & wr_ni) ? 3'd0 : low_q + {2'b00, low_q != 3'd5};
+    low_q     <= (rd_ni & wr_ni) ? 4'd0 : low_q + {3'd0, low_q != Settled};
     rd_fell_q <= {rd_fell_q[1:0], rd_nq & ~rd_ni};
     wr_fell_q <= {wr_fell_q[1:0], wr_nq & ~wr_ni};
   end
-  logic was_low, rise, ours, host_moves;
-  assign was_low    = ~rd_nq | ~wr_nq;
-  assign rise       = was_low & rd_ni & wr_ni;
-  assign ours       = was_low && sel_q && low_q >= 3'd3 && (~rd_ni | ~wr_ni);
-  assign host_moves = step_q == 3'd1;
+  logic was_low, rise, reads, ours;
+  assign was_low = ~rd_nq | ~wr_nq;
+  assign rise    = was_low & rd_ni & wr_ni;
+  assign reads   = !rd_ni && sel_i;
+  assign ours    = was_low && sel_q && low_q >= 4'd3 + skew && (~rd_ni | ~wr_ni);
   always_comb begin
     // guarantee: power-on
     assume (rst_ni == started_q);
@@ -103,21 +113,19 @@ module dpram_rules (
     assume (rd_ni || wr_ni);
     // guarantee: host-bus:2.2/113, `bus: 113, *`; host-bus:2.2/114, `bus: 114, *`
     assume ((!rd_nq || rd_ni || rd_fell_q == 3'b000) && (!wr_nq || wr_ni || wr_fell_q == 3'b000));
-    // guarantee: host-bus:2.5/7, `bus: b, *`
-    if (low_q != 3'd0) assume (sel_i == sel_q);
     if (was_low) begin
       // guarantee: host-bus:2.2/113, `bus: 113, *`; host-bus:2.2/114, `bus: 114, *`
       assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
       // guarantee: host-bus:2.5/7, `bus: b, *`
       assume (sel_i == sel_q && addr_i == addr_q);
       // guarantee: host-bus:2.6/6, `bus: w1, *`
-      assume (low_q < 3'd3 || wdata_i == wdata_q);
-      // guarantee: host-bus:2.2/118, `bus: 118, *`
-      assume (!rise || !sel_q || !wait_q);
+      assume (low_q < 4'd3 || wdata_i == wdata_q);
+      // guarantee: host-bus:2.2/118, `bus: 118, *`; host-bus:2.2/102, `bus: 102, *`
+      assume (!rise || !sel_q || (!wait_q && low_q >= 4'd7));
     end
     // guarantee: isa_slave R3, R4
     assume (!host_wr_i || (!host_sel_i && !host_rd_i));
-    if (!host_moves) begin
+    if (step != 3'd1) begin
       // guarantee: isa_slave R3
       assume (host_sel_i == host_sel_q && host_wr_i == host_wr_q && host_wdata_i == host_wdata_q);
       assume (host_rd_i == host_rd_q && host_addr_i == host_addr_q && host_be_i == host_be_q);
@@ -131,7 +139,8 @@ module dpram_rules (
 
   // ---------------------------------------------------------------- what an observer of the pins counts
   logic       conflict, host_here, host_ends, asked_q = 1'b0, ended_q = 1'b0, cpu_busy_q = 1'b0;
-  logic [3:0] cpu_steps_q = 4'd0, host_steps_q = 4'd0;
+  logic [3:0] cpu_steps_q = 4'd0;
+  logic [4:0] host_steps_q = 5'd0;
   logic [1:0] turns_q = 2'd0;
   assign host_here = host_sel_i | (asked_q & ~host_rd_i);  // a write ends with the clock after its command
   assign conflict  = host_here & (host_addr_i == addr_i) & (~host_rd_i | ~wr_ni);
@@ -143,7 +152,7 @@ module dpram_rules (
     turns_q     <= !cpu_busy ? 2'd0 : turns_q + {1'd0, host_ends && conflict && turns_q != 2'd3};
     // The host: steps of BUSY since the CPU's strobe has first been high.
     ended_q      <= host_busy & (ended_q | (rd_ni & wr_ni));
-    host_steps_q <= !(host_busy && ended_q) ? 4'd0 : host_steps_q + {3'd0, host_steps_q != 4'd15};
+    host_steps_q <= !(host_busy && ended_q) ? 5'd0 : host_steps_q + {4'd0, host_steps_q != 5'd31};
   end
 
   logic touch_a, touch_b, write_a, write_b;
@@ -152,29 +161,29 @@ module dpram_rules (
   assign touch_a = write_a | \dut.u_memory.a_re_i ;
   assign touch_b = write_b | \dut.u_memory.b_re_i ;
 
-  // Who may have a word, as the two sides must believe. The CPU: in a read while its pins are driven; in a write from
-  // /TA low on until the memory has been written. The host: from the edge of
-  // clk_ref that found its command and left BUSY low, to its end.
-  logic       edge_pwm, read_q = 1'b0, made_q = 1'b0, due_q = 1'b0, due_bit_q, drive_q = 1'b0;
+  // Who may have a word, as the two sides must believe. The CPU, behind what late lines leave of the strobe before: in a
+  // read while its pins are driven; in a write from /TA low on until the memory has been written. The host: from the
+  // edge of clk_ref that found its command and left BUSY low, to its end.
+  logic       read_q = 1'b0, made_q = 1'b0, due_q = 1'b0, due_bit_q;
   logic       cpu_reads, cpu_writes, host_in, made;
-  logic [1:0] due_addr_q;
-  logic [2:0] due_steps_q = 3'd0;
-  assign edge_pwm   = !clk_pwm_q;  // at the end of this step
-  assign cpu_reads  = !rd_ni && sel_i && cpu_drive;
-  assign cpu_writes = !wr_ni && sel_i && !cpu_wait && !made_q;
+  logic [1:0] due_addr_q, drive_q = 2'd0, reads_q = 2'd0;
+  logic [3:0] due_steps_q = 4'd0;
+  assign cpu_reads  = reads && low_q >= 4'd3 && cpu_drive;
+  assign cpu_writes = !wr_ni && sel_i && low_q >= 4'd3 && !cpu_wait && !made_q;
   assign host_in    = host_here && asked_q && !host_busy;
   assign made       = edge_pwm && write_a && \dut.u_memory.a_addr_i [1:0] == (due_q ? due_addr_q : addr_i) &&
                       \dut.u_memory.a_wdata_i == {16{due_q ? due_bit_q : wdata_i}};
   always @($global_clock) begin
-    drive_q <= cpu_drive;
+    drive_q <= {drive_q[0], cpu_drive};
+    reads_q <= {reads_q[0], reads};
     read_q  <= edge_pwm && \dut.u_memory.a_re_i && \dut.u_memory.a_addr_i [1:0] == addr_i;
     made_q  <= !wr_ni && (made_q || (made && !due_q));
     if (edge_ref) asked_q <= host_sel_i;
     // A write whose strobe has ended, after /TA was low, may be made a little later.
     if (rise && !wr_nq && sel_q && !made_q) begin
-      {due_q, due_addr_q, due_bit_q, due_steps_q} <= {!made, addr_q, wdata_q, 3'd0};
+      {due_q, due_addr_q, due_bit_q, due_steps_q} <= {!made, addr_q, wdata_q, 4'd0};
     end else if (due_q) begin
-      {due_q, due_steps_q} <= {!made, due_steps_q + 3'd1};
+      {due_q, due_steps_q} <= {!made, due_steps_q + 4'd1};
     end
   end
 
@@ -198,13 +207,15 @@ module dpram_rules (
     end
 
     // R3: BUSY means wait: /TA is up with BUSY. A strobe that heeds /TA gets its word: it is driven at the end of /RD,
-    // and a write is made, with its address and data, at most 8 steps after /WR.
-    R3: assert ((!cpu_busy || cpu_wait || !ours) && (!rise || !sel_q || rd_nq || drive_q) && due_steps_q < 3'd7);
-    C3: cover (due_q && due_steps_q == 3'd1);
+    // and a write is made, with its address and data, at most 8 steps after /WR, with a late line 10.
+    R3: assert ((!cpu_busy || cpu_wait || !ours) && (!rise || !sel_q || rd_nq || drive_q[0]) &&
+                due_steps_q < 4'd7 + skew);
+    C3: cover (due_q && due_steps_q == 4'd1);
 
-    // R4: The CPU is let in within 8 steps, 34 ns, of its fall or the end of the host's access to its word.
+    // R4: The CPU is let in within 8 steps, 34 ns, of its fall or the end of the host's access to its word, with a late
+    // line 10 steps, 42 ns.
     if (cpu_wait) begin
-      R4: assert (cpu_steps_q <= 4'd7);
+      R4: assert (cpu_steps_q <= 4'd7 + skew);
       C4: cover (cpu_steps_q == 4'd7);
     end
 
@@ -214,22 +225,23 @@ module dpram_rules (
       C5: cover (turns_q == 2'd1);
     end
 
-    // R6: The host is let in at most 13 steps, 55 ns, after the CPU's strobe ended, even if a new one falls at once.
+    // R6: The host is let in at most 13 steps, 55 ns, after the CPU's strobe ended, with a late line 15, even if a new
+    // one falls at once.
     if (host_busy) begin
-      R6: assert (host_steps_q <= 4'd13);
-      C6: cover (host_steps_q == 4'd6 && !rd_ni);
+      R6: assert (host_steps_q <= 5'd13 + {1'b0, skew});
+      C6: cover (host_steps_q == 5'd6 && !rd_ni);
     end
 
-    // R7: From five steps after its fall on, when the remains of others are gone, the CPU becomes BUSY only by the word
-    // that the host is at or has just left, and if one of the two writes.
-    if (cpu_busy && !cpu_busy_q && ours && low_q == 3'd5) begin
+    // R7: From five steps after its fall on, with a late line seven, when the remains of others are gone, the CPU
+    // becomes BUSY only by the word that the host is at or has just left, and if one of the two writes.
+    if (cpu_busy && !cpu_busy_q && ours && low_q >= 4'd5 + skew) begin
       R7: assert (addr_q == host_addr_q && (!host_rd_q || !wr_nq));
       C7: cover (host_rd_q);
     end
 
-    // R8: The CPU's data pins are driven while /RD is low, from the edge on that has read the memory at its address,
-    // never else, and stand.
-    R8: assert (!cpu_drive || (cpu_reads && (drive_q ? rdata == rdata_q : read_q)));
+    // R8: The CPU's data pins are driven in a read of this RAM alone, from the edge on that has read the memory at its
+    // address, and stand; they are off with its end, with a late /RD two steps behind it.
+    R8: assert (!cpu_drive || ((reads || (late[5] && reads_q != 2'd0)) && (drive_q[0] ? rdata == rdata_q : read_q)));
     C8: cover (cpu_drive && cpu_wait);
 
     // R9: The memory is written by the CPU's side once for a write of this RAM, at its address and with its data, and
@@ -237,6 +249,12 @@ module dpram_rules (
     if (edge_pwm && write_a) begin
       R9: assert (made && (due_q || (!wr_nq && sel_q && !made_q)));
       C9: cover (!due_q);
+    end
+
+    // R10: /TA of a read falls a clock after its data: the CPU may take these that much sooner (rows 105, 118).
+    if (reads && low_q >= 4'd3 && !cpu_wait) begin
+      R10: assert (cpu_drive && drive_q == 2'b11);
+      C10: cover (low_q == Settled);
     end
   end
 

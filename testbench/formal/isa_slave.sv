@@ -38,15 +38,9 @@ module isa_slave_rules (
   input wire logic        mem_busy_i
 );
 
-  // Time: clk_pwm rises with every other step, clk_ref with every third of these.
-  logic [2:0] step_q = 3'd0;
-  logic       clk_pwm_q = 1'b0, clk_ref_q = 1'b0, edge_ref;
-  always @($global_clock) begin
-    step_q    <= (step_q == 3'd5) ? 3'd0 : step_q + 3'd1;
-    clk_pwm_q <= ~clk_pwm_q;
-    clk_ref_q <= step_q < 3'd3;
-  end
-  assign edge_ref = step_q == 3'd0;  // at the end of this step
+  logic       clk_pwm, clk_ref, edge_pwm, edge_ref;
+  proof_clocks clocks (.clk_pwm_o(clk_pwm), .clk_ref_o(clk_ref), .edge_pwm_o(edge_pwm), .edge_ref_o(edge_ref),
+                       .step_o());
 
   (* anyconst *) logic [7:0] io_base;
   (* anyconst *) logic [9:0] window;
@@ -62,7 +56,7 @@ module isa_slave_rules (
   logic [1:0]  oe, pic_addr, mem_be;
   logic        ready, cs16_n, host_reset, hp_sel, hp_rd, hp_rd_done, hp_wr, pic_sel, pic_rd, pic_wr;
   logic        mem_sel, mem_rd, mem_wr;
-  isa_slave dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .isa_la_i(la_i), .isa_sa_i(sa_i),
+  isa_slave dut (.clk_pwm_i(clk_pwm), .clk_ref_i(clk_ref), .rst_ni, .isa_la_i(la_i), .isa_sa_i(sa_i),
                  .isa_sd_i(sd_i),
                  .isa_ior_ni(cmd_ni[0]), .isa_iow_ni(cmd_ni[1]), .isa_memr_ni(cmd_ni[2]), .isa_memw_ni(cmd_ni[3]),
                  .isa_aen_i(aen_i), .isa_sbhe_ni(sbhe_ni), .isa_resetdrv_i(resetdrv_i), .isa_sd_o(sd), .isa_sd_oe_o(oe),
@@ -118,7 +112,7 @@ module isa_slave_rules (
   (* hierconn *) wire logic [2:0] \dut.cycle_q ;
   always @($global_clock) if (rst_ni) begin
     if (edge_ref) {at2_q, at_q, begun_q, switched_q} <= {at_q, aen_i, sa_i[16:0], cmd2_q, 1'b1};
-    if (!clk_pwm_q) {cmd2_q, cmd1_q} <= {cmd1_q, cmd};
+    if (edge_pwm) {cmd2_q, cmd1_q} <= {cmd1_q, cmd};
   end
   logic io_ours;
   assign io_ours = !at2_q[17] && at2_q[9:4] == io_base[5:0] && (!io_decode16 || at2_q[15:10] == {4'h0, io_base[7:6]}) &&

@@ -186,6 +186,32 @@ TEST(PortAFaults, EachIsFoundByItsRuleOnBothEngines) {
     for (const Fault& fault : faults()) EXPECT_EQ(broken(engine, fault.seed), fault.rules) << fault.what;
 }
 
+// Traffic in one region, at every phase, of a board whose enable of D ends at once or, a fault, with a flip-flop of
+// clk_pwm.
+Rules broken_by_enable(MachineConfig config, bool waits, unsigned multiplier, PortATiming::Region region,
+                       unsigned wait_states) {
+  config.rewire = [waits](std::unique_ptr<Board> board) {
+    auto distorted = std::make_unique<DistortedBoard>(std::move(board));
+    distorted->at_once = !waits;
+    return distorted;
+  };
+  Machine machine(sc_core::sc_gen_unique_name("brick"), config);
+  BusTraffic traffic(machine, 1);
+  PinWatch watch;
+  watch.set_pin_delay(machine.skew().of_strobe(false));
+  PortATiming timing;
+  watch.on_cycle = [&](const PinCycle& c) { timing.cycle(c); };
+  machine.attach_port_a_watch(&watch);
+  traffic.set_clock(multiplier);
+  traffic.set_wait_states(region, wait_states);
+  traffic.every_phase(region);
+  machine.attach_port_a_watch(nullptr);
+  Rules rules;
+  for (const TimingViolation& v : timing.ledger().violations()) rules.insert(timing.ledger().rules()[v.rule].id);
+  EXPECT_GT(timing.ledger().row(PortATiming::kDrivesInside, region).evaluations, 100u);
+  return rules;
+}
+
 // I52 = 31: the CPU drives D 9 / 4 TC = 7.15 ns after the /RD of a read with seven wait states. An enable that ends
 // with a flip-flop of clk_pwm is up to 8.48 ns late.
 TEST(PortAFaults, AnEnableThatWaitsForAClockIsFoundOnBothEngines) {
@@ -194,26 +220,27 @@ TEST(PortAFaults, AnEnableThatWaitsForAClockIsFoundOnBothEngines) {
     for (const bool waits : {false, true}) {
       MachineConfig config;
       config.engine = engine;
-      config.rewire = [waits](std::unique_ptr<Board> board) {
-        auto distorted = std::make_unique<DistortedBoard>(std::move(board));
-        distorted->at_once = !waits;
-        return distorted;
-      };
-      Machine machine(sc_core::sc_gen_unique_name("brick"), config);
-      BusTraffic traffic(machine, 1);
-      PinWatch watch;
-      PortATiming timing;
-      watch.on_cycle = [&](const PinCycle& c) { timing.cycle(c); };
-      machine.attach_port_a_watch(&watch);
-      traffic.set_clock(32);
-      traffic.set_wait_states(PortATiming::kDpram, 7);
-      traffic.every_phase(PortATiming::kDpram);
-      machine.attach_port_a_watch(nullptr);
-      Rules rules;
-      for (const TimingViolation& v : timing.ledger().violations()) rules.insert(timing.ledger().rules()[v.rule].id);
-      EXPECT_EQ(rules, waits ? (Rules{"c", "e"}) : Rules{}) << (engine == Engine::kRtl ? "RTL" : "SystemC");
-      EXPECT_GT(timing.ledger().row(PortATiming::kDrivesInside, PortATiming::kDpram).evaluations, 100u);
+      EXPECT_EQ(broken_by_enable(config, waits, 32, PortATiming::kDpram, 7), waits ? (Rules{"c", "e"}) : Rules{})
+          << (engine == Engine::kRtl ? "RTL" : "SystemC");
     }
+}
+
+// Above I52 = 15 with --skew, host-bus:2.5: gate ICs hold up to 25 with I52 + 1 wait states. At 22 and 25 the next /RD
+// may fall before one that comes 8.477 ns late has ended D (row 113: 11 / 4 TC - 4 ns = 8.2 and 6.8 ns).
+TEST(PortAFaults, ALateEnableIsFoundBehindTheLatestPadAboveTheClocksOfTheSheet) {
+  BRICK_COVERS("CARD-5");
+  MachineConfig config;
+  config.skew = true;
+  while (PinSkew(config.seed).of_strobe(false) != PinSkew::kMost) ++config.seed;
+  for (const Engine engine : {Engine::kSystemC, Engine::kRtl})
+    for (const unsigned i52 : {16, 19, 22, 25})
+      for (const bool waits : {false, true}) {
+        SCOPED_TRACE(::testing::Message() << (engine == Engine::kRtl ? "RTL" : "SystemC") << ", I52 = " << i52);
+        config.engine = engine;
+        const Rules rules = broken_by_enable(config, waits, i52 + 1, PortATiming::kGateIcs, i52 + 1);
+        EXPECT_EQ(rules.count("e") != 0, waits);
+        EXPECT_TRUE(waits || rules.empty()) << ::testing::PrintToString(rules);
+      }
 }
 
 // A board that drives D in a write, or while nobody asks.

@@ -130,6 +130,21 @@ class Pads(unittest.TestCase):
         row = next(row for row in fpga_pads.rows(found) if row.rule == "host-bus:2.6/5")
         self.assertAlmostEqual(row.has, 3.4 + 0.7 + 3.5)
 
+    def test_a_gate_of_rd_ends_it_sooner(self):
+        gate = DRIVEN.replace("oe/Q u_pa", "gate/F u_pa").replace('(CELL (CELLTYPE "top")', r"""(CELL (CELLTYPE "top")
+  (INTERCONNECT pa_rd_ni\$tr_io/O gate/A (1:2:600) (1:2:600))
+  (INTERCONNECT oe/Q gate/B (1:2:100) (1:2:100))""") + """
+(CELL
+  (CELLTYPE "TRELLIS_COMB")
+  (INSTANCE gate)
+  (IOPATH A F (1:2:240) (1:2:240))
+  (IOPATH B F (1:2:240) (1:2:240))
+)"""
+        found, _ = fpga_pads.delays(fpga_pads.read(gate.splitlines()))
+        self.assertAlmostEqual(found["pa_data_io"]["off"], 1.0 + 0.4 + 0.1 + 0.24 + 2.0)
+        row = next(row for row in fpga_pads.rows(found) if row.rule == "host-bus:2.6/5")
+        self.assertAlmostEqual(row.has, 0.6 + 0.24 + 2.0 + 0.7 + 3.5)
+
     def test_the_ram_may_be_a_tick_less_1_41_ns_behind_its_ta(self):
         found = {"pa_data_io": {"ram": 10.0}, "pa_ta_n_o": {"ram": 3.0, "out": 1.0}}
         row = next(row for row in fpga_pads.rows(found) if row.rule == "host-bus:6.9/8")

@@ -82,11 +82,6 @@ class SignOff(Tree):
             self.assertIn("| `breq` 2 | `breq` 90.0 % |", self.page())
             self.assertIn(f"| none | {firmware} |", self.page())
 
-    def test_a_proof_of_the_pins_is_of_the_module_too(self):
-        self.write("testbench/formal/breq_pins.sv", "    R1: assert (a);\n")
-        self.run_tool("signoff.py", "--write")
-        self.assertIn("| `breq` 2<br>`breq_pins` 1 | `breq` 90.0 % |", self.page())
-
     def test_a_test_that_failed_is_no_pass(self):
         results = (self.root / "docs/test-results.json").read_text()
         self.write("docs/test-results.json", results.replace('"passed"', '"failed"'))

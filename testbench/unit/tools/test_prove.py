@@ -62,6 +62,16 @@ class Proofs(Tree):
         self.prove(1, "induction of 5 steps fails in its base at ['R1']", ("pdr", "induction 5"),
                    ("count <= 4'd9", "count == 4'd0"))
 
+    def test_a_rule_that_breaks_at_any_step_of_several_clocks_fails(self):
+        """Six steps are proved as one: the rule is looked at in each of them."""
+        for age in range(5, 11):
+            self.prove(1, f"R1 refuted at step {age + 1}", ("clocks: one", "clocks: several"),
+                       ("input wire logic clk_i, ", ""), ("counter dut", "logic clk_i = 1'b0; counter dut"),
+                       ("@(posedge clk_i)", "@($global_clock)"), ("started_q <= 1'b1;", "clk_i <= ~clk_i;"),
+                       ("logic started_q = 1'b0;", "logic started_q = 1'b0; logic [4:0] age_q = 5'd0;"),
+                       ("assume (started_q || !rst_ni);", "age_q <= age_q + 5'd1;"),
+                       ("assert (count <= 4'd9)", f"assert (age_q != 5'd{age})"))
+
     def test_no_answer_in_time_fails(self):
         self.prove(1, "yosys: no answer within 0.001 s", limit="0.001")
 
