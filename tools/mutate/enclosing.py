@@ -22,15 +22,16 @@ def place(source, spans, start, old, new):
     head = in_common(old, new)
     tail = in_common(old[head:][::-1], new[head:][::-1])
     start, end, new = start + head, start + len(old) - tail, new[head:len(new) - tail]
-    if not new.strip():  # left out, with the spaces beside it or without
+    first, last = start, end  # of what is more than spaces: those beside a statement belong to none
+    if not new.strip():
         gone = source[start:end]
-        start, end = start + len(gone) - len(gone.lstrip()), end - len(gone) + len(gone.rstrip())
-    around = [span for span in spans if span[0] <= start and end <= span[1]]
+        first, last = start + len(gone) - len(gone.lstrip()), end - len(gone) + len(gone.rstrip())
+    around = [span for span in spans if span[0] <= first and last <= span[1]]
     statements = [span for span in around if span[2]]
     if not around:
         raise ValueError("it stands in no statement or expression that runs")
     a, b, is_statement = min(statements or around, key=lambda span: span[1] - span[0])
-    whole = source[a:start] + new + source[end:b]
+    whole = source[a:max(a, start)] + new + source[min(b, end):b]
     return Place(a, b, "planted", source[a:b].decode(), whole.decode(), is_statement)
 
 

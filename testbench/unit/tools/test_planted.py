@@ -61,6 +61,7 @@ class Places(unittest.TestCase):
     def test_of_verilog(self):
         spans = enclosing.of_verilog(MODULE)
         self.assertEqual(span(MODULE, spans, b"assign r = a & b", b"assign r = a | b"), ("a & b", "a | b", False))
+        self.assertEqual(span(b"x = y & yz;", [(4, 10, False)], b"y & yz", b"yz")[1], "yz")
         self.assertEqual(span(MODULE, spans, b"q <= b;", b"q <= ~b;"), ("q <= b;", "q <= ~b;", True))
         self.assertEqual(span(MODULE, spans, b"if (a)", b"if (b)"), ("if (a) q <= b;", "if (b) q <= b;", True))
 
