@@ -5,7 +5,8 @@
 // host-bus:2.2 at I52 from 0 to 15, and nothing else of another device's cycle:
 // - /RD and /WR are never low together; low and high last a step or more (rows 113, 114: 7.1 ns, 116: 8.5 ns);
 // - address, space and AA stand from the fall to a step after the rise (rows 101, 103, 115, 117 and the clock between
-//   cycles of few wait states: 5.9 ns), in a write of ours the data, too;
+//   cycles of few wait states: 5.9 ns); in a write address and data for 15 steps, 63.6 ns, at least (host-bus:2.6/7:
+//   60.4), and no longer: so R5 sees whether they are taken where they stand;
 // - a strobe of ours is low for 20 steps or more, 84.8 ns (row 102 with the least wait states of host-bus:2.5: 85.0 at
 //   I52 = 3, 91.4 with those of the clock's class; row 116 gives more). One of the 51.9 ns of host-bus:2.6/8 may be
 //   made 76.3 ns after its fall, behind its end: R1 fails.
@@ -27,6 +28,9 @@
 // fault R5: data are taken with the strobe, before they stand (rtl/board/bus_sync.sv)
 //   - wdata_q    <= pa_wdata_i;
 //   + if (wr_falls_i != wr1_q) wdata_q <= pa_wdata_i;
+// fault R5: a write has the address of the last look at its strobe (rtl/board/bus_sync.sv)
+//   - , addr_o} = where_q;
+//   + , addr_o} = pins_q;
 `default_nettype none
 
 module bus_sync_rules (
@@ -80,8 +84,10 @@ module bus_sync_rules (
     if (low) begin
       // guarantee: host-bus:2.2/113, `bus: 113, *`; host-bus:2.2/114, `bus: 114, *`
       assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
-      // guarantee: host-bus:2.5/7, `bus: b, *`; host-bus:2.6/6, `bus: w1, *`
-      assume (ours_i == ours_q && addr_i == addr_q && wdata_i == wdata_q);
+      // guarantee: host-bus:2.5/7, `bus: b, *`
+      assume (ours_i == ours_q && (!wr_nq || addr_i == addr_q));
+      // guarantee: host-bus:2.6/6, `bus: w1, *`; host-bus:2.6/7, `bus: w2, *`
+      assume (wr_nq || age_q >= 5'd15 || (addr_i == addr_q && wdata_i == wdata_q));
       // guarantee: host-bus:2.6/8, `bus: s1, *`
       assume (!rise || !ours_q || age_q >= 5'd20);
     end

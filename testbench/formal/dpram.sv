@@ -161,8 +161,8 @@ module dpram_rules (
   assign touch_a = write_a | \dut.u_memory.a_re_i ;
   assign touch_b = write_b | \dut.u_memory.b_re_i ;
 
-  // Who may have a word, as the two sides must believe. The CPU, behind what late lines leave of the strobe before: in a
-  // read while its pins are driven; in a write from /TA low on until the memory has been written. The host: from the
+  // Who may have a word, as the two sides must believe. The CPU, behind what late lines leave of the strobe before: in
+  // a read while its pins are driven; in a write from /TA low on until the memory has been written. The host: from the
   // edge of clk_ref that found its command and left BUSY low, to its end.
   logic       read_q = 1'b0, made_q = 1'b0, due_q = 1'b0, due_bit_q;
   logic       cpu_reads, cpu_writes, host_in, made;

@@ -126,6 +126,32 @@ TEST_P(BoardMap, WritesBackToBackDoNotMerge) {
   }
 }
 
+// host-bus:2.6/2: a write has the address and the data of 25.4 to 50.9 ns after the fall of its strobe, however long
+// that is low: from then on they may be another's.
+TEST_P(BoardMap, AWriteIsOfTheAddressWhereItStands) {
+  constexpr Tick kStands = 2 * kTicksPerRef;  // 50.9 ns
+  for (Tick phase = 0; phase < kTicksPerRef; ++phase)
+    for (const Tick low : {kStands + 1, kStands + 3, kStands + 6, Tick{30}}) {
+      rig.write(true, kHostSignals, 0);
+      rig.run(30 + phase);
+      rig.in.pa_x = true;
+      rig.in.pa_addr = kHostSignals;
+      rig.in.pa_wdata = 7;
+      rig.in.pa_wr_n = false;
+      rig.apply();
+      rig.run(kStands);
+      rig.in.pa_addr = kHostSignals + 0x40;  // nobody's
+      rig.in.pa_wdata = 2;
+      rig.apply();
+      rig.run(low - kStands);
+      rig.in.pa_wr_n = true;
+      rig.apply();
+      rig.run(12);
+      EXPECT_EQ(rig.get(pin::kIpos) | rig.get(pin::kBreq) << 1 | rig.get(pin::kEror) << 2, 7u)
+          << "phase " << phase << ", low for " << low << " ticks";
+    }
+}
+
 // host-bus:2.6/1: low for 50.9 ns at the edges of clk_pwm, a strobe is an access however soon the next one follows; too
 // short, it is none. The two words that HOTX gets go to RX one after the other; of the two that the host has sent each
 // read frees one.
