@@ -1,8 +1,8 @@
 """Every bench through the built command: it passes on its engines and seeds, and fails its negative control. A bench
 that runs in lock-step does not run on the RTL alone as well: there the RTL and the model get the same inputs, are equal
-at every tick, and the bench judges what they show; the RTL alone has `smoke`, `watchdog` and the tests of the whole
-controller. In lock-step here: what the hardware shows, and a path; benches of what is the image's alone run so in the
-plan `night`, as do more seeds of each. usage: bench_acceptance.py BRICK CASE; each CASE is one test."""
+at every tick, and the bench judges what they show; the RTL alone has `smoke` and the tests of the whole controller. In
+lock-step here: what the hardware shows, and a path; benches of what is the image's alone run so in the plan `night`, as
+do more seeds of each. usage: bench_acceptance.py BRICK CASE; each CASE is one test."""
 import fnmatch
 import json
 import pathlib
@@ -43,8 +43,9 @@ def fails_its_negative_control(name, engine="systemc", board=None, **other):
 
 
 def every_board():
-    """Every bench on every board: it passes, or says in one line what the board has not; nothing in between."""
-    # and nothing else
+    """Every bench on boards that are not its own: it passes, or says in one line what the board has not; nothing in
+    between. Each bench passes on a quarter of the boards, each board meets a quarter of the benches; the plan `night`
+    has all pairs."""
     one_servo_ic = {"watchdog", "reinit-e3", "clock-select", "clock-faults", "clock-macro", "port-a-phase",
                     "port-a-hammer", "task-load"}
     every_bench = {b["name"] for b in json.loads(brick("list", "--json").stdout)}
@@ -61,12 +62,13 @@ def every_board():
                                    "clock-macro", "dpram", "dpram-ascii", "dpram-reporting", "gather", "host-port",
                                    "isa-timing", "bus-timing", "plc", "listing", "variables", "status",
                                    "save-restore"}}
-    for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
-        for bench in json.loads(brick("list", "--json").stdout):
-            if bench["board"] == board and bench["name"] not in refused.get(board, set()):
-                continue  # a case of its own
+    for at, board in enumerate(sorted(f.stem for f in BOARDS.glob("*.toml"))):
+        for number, bench in enumerate(json.loads(brick("list", "--json").stdout)):
+            has = bench["name"] not in refused.get(board, set())
+            if has and (bench["board"] == board or (at + number) % 4 != 0):
+                continue  # a case of its own, or one of `night`
             r = brick("run", bench["name"], "--engine", "systemc", "--board", board)
-            if bench["name"] in refused.get(board, set()):
+            if not has:
                 said = (f"brick run: {bench['name']} needs {bench['needs']}, which board {board} has not; "
                         f"expected a board such as {bench['board']}\n")
                 check(r.returncode == 2 and r.stderr == said and bench["needs"],
@@ -149,7 +151,7 @@ def interrupts():
 
 # covers: WDT-1
 def watchdog():
-    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+    for engine, seed in (("systemc", "1"), ("lockstep", "3")):
         bench_passes("watchdog", engine, seed)
 
 
@@ -157,7 +159,7 @@ def watchdog():
 def reinit_e3():
     for engine, seed in (("systemc", "1"), ("lockstep", "3")):
         bench_passes("reinit-e3", engine, seed)
-    r, results = run_json("reinit-e3", "--engine", "lockstep", "--board", "turbo-pmac2-pc")  # with a MACRO IC
+    r, results = run_json("reinit-e3", "--engine", "systemc", "--board", "turbo-pmac2-pc")  # with a MACRO IC
     check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
 
 
@@ -169,10 +171,6 @@ def save_restore():
 
 def clock_select():
     bench_passes("clock-select", "systemc")
-
-
-def clock_select_lockstep():
-    bench_passes("clock-select", "lockstep", "3")
 
 
 def clock_faults():
@@ -296,10 +294,6 @@ def jog_home_lockstep():
 
 def motion():
     bench_passes("motion", "systemc")
-
-
-def motion_lockstep():
-    bench_passes("motion", "lockstep", "6")
 
 
 def short_lockstep(name, seed, size=None, most=300):
