@@ -22,7 +22,7 @@ enum class Fault { kNone, kLost, kDoubled, kSwapped };
 class StreamOn : public Controller {
  protected:
   // BRICK_STREAM_LINES: lines of each stream.
-  long lines(long on_systemc = 2000, long in_lockstep = 200) const {
+  long lines(long on_systemc = 2000, long in_lockstep = 100) const {
     const char* wanted = std::getenv("BRICK_STREAM_LINES");
     if (wanted != nullptr) return std::strtol(wanted, nullptr, 10);
     return GetParam() == Engine::kSystemC ? on_systemc : in_lockstep;
@@ -229,7 +229,7 @@ TEST_P(StreamOn, RotaryBuffersExecuteEachLineOnceAndInOrder) {
 TEST_P(StreamOn, RotaryBuffersThroughTheDualPortedRam) {
   start();
   ASSERT_NO_FATAL_FAILURE(use_ram());
-  stream(lines(800, 60));
+  stream(lines(800, 40));
 }
 
 // By the background and by the real-time task in turn; a header that is in use is not touched by either change.
