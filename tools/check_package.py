@@ -49,7 +49,7 @@ def dead_links(prefix):
 
 
 def other_pages(prefix):
-    """Installed pages that are no files of the tree, or others: what a package holds depends on the commit alone."""
+    """Installed pages that are no files of the tree, or others: nothing that was made beside it goes into a package."""
     known = {str(file) for file in tracked(ROOT)}
     folder = prefix / "share/doc/brick"
     for page in sorted(page for page in folder.rglob("*") if page.is_file()):

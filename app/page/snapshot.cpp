@@ -212,13 +212,16 @@ json Snapshot::tasks() {
   const double us = static_cast<double>(machine_.cpu_period()) * 1e-9;
   const std::uint32_t phase_period = phase_cycles_ / 2, servo_period = phase_period * servo_phases_;
   const auto task = [&](std::uint32_t halves, std::int64_t own, std::int64_t period) {
-    return json{{"us", rounded(2 * halves * us)},
-                {"load", period == 0 ? 0 : rounded(static_cast<double>(own) / static_cast<double>(period))}};
+    return json{
+        {"us", rounded(2 * halves * us)},
+        {"load",
+         period == 0 ? 0 : rounded(static_cast<double>(std::max<std::int64_t>(own, 0)) / static_cast<double>(period))}};
   };
   const std::int64_t phase = pair.x, servo = pair.y, longest = real_time.x;
-  const std::int64_t servo_own = servo - (phase_period == 0 ? 0 : servo / phase_period * phase);
+  const auto times = [](std::int64_t span, std::uint32_t period) { return period == 0 ? 0 : span / period; };
+  const std::int64_t servo_own = servo - times(servo, phase_period) * phase;
   const std::int64_t real_time_own =
-      longest - (phase_period == 0 ? 0 : longest / phase_period * phase + longest / servo_period * servo_own);
+      longest - times(longest, phase_period) * phase - times(longest, servo_period) * servo_own;
   return {{"phase", task(pair.x, phase, phase_period)},
           {"servo", task(pair.y, servo_own, servo_period)},
           {"real_time", task(real_time.x, real_time_own, std::int64_t{servo_period} * real_time_servos_)},

@@ -89,20 +89,22 @@ def measured(browser, address, polls):
 def main():
     with subprocess.Popen([sys.argv[1], "serve", "--listen", "127.0.0.1:0", "--page", "127.0.0.1:0", "--plant", "dac8",
                            "--load", "dac8"], text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
-        port = int(re.search(r":(\d+),", process.stdout.readline())[1])
-        address = process.stdout.readline().split()[-1]
-        polls = [Polls(port) for _ in range(3)]
-        for line in ("#{}J/", "#{}J+"):
-            polls[0].client.command("".join(line.format(motor) for motor in range(1, 9)))
-        with stalled(port), Browser() as browser:
-            for one in polls:
-                one.start()
-            time.sleep(5)
-            rounds = [measured(browser, address, polls[0]) for _ in range(ROUNDS)]
-            for one in polls:
-                one.ends = True
-                one.join()
-        process.terminate()
+        try:
+            port = int(re.search(r":(\d+),", process.stdout.readline())[1])
+            address = process.stdout.readline().split()[-1]
+            polls = [Polls(port) for _ in range(3)]
+            for line in ("#{}J/", "#{}J+"):
+                polls[0].client.command("".join(line.format(motor) for motor in range(1, 9)))
+            with stalled(port), Browser() as browser:
+                for one in polls:
+                    one.start()
+                time.sleep(5)
+                rounds = [measured(browser, address, polls[0]) for _ in range(ROUNDS)]
+                for one in polls:
+                    one.ends = True
+                    one.join()
+        finally:
+            process.terminate()
     age, share, rate, speed, state = (statistics.median(column) for column in zip(*rounds, strict=True))
     row("page, eight moving axes, five clients: age of its data", f"{age:.2f} s", f"<= {AGE} s", age <= AGE)
     row("  of the simulator's processor time", f"{100 * share:.1f} %", f"<= {100 * SHARE:.0f} %", share <= SHARE)

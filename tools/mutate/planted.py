@@ -42,7 +42,7 @@ class Group:
 
     def inputs(self):
         """A hash of all that decides but the bugs themselves."""
-        tools = sorted(pathlib.Path(__file__).parent.glob("*.py"))
+        tools = sorted(file for kind in ("*.py", "*.h", "*.cpp") for file in pathlib.Path(__file__).parent.glob(kind))
         files = sorted({bug.file for bug in bugs.read() if bug.tests.program == self.name})  # whichever are asked for
         return hash_of(self.tree / "bin" / self.name, *tools, *(ROOT / file for file in files))
 
@@ -142,7 +142,8 @@ def judged(group, options):
         found, by = group.judge(bug)
         rows[bug.key] = {"number": bug.number, "rule": bug.rule, "file": bug.file, "found": found, "by": by,
                          "key": bug.key}
-        records.write(path, {"program": group.name, "inputs": inputs}, list(rows.values()))  # --resume goes on there
+        if not options.count:  # a draw leaves the results of all as they are
+            records.write(path, {"program": group.name, "inputs": inputs}, list(rows.values()))  # for --resume
     return rows, len(todo), group.build_seconds
 
 

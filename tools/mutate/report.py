@@ -34,7 +34,7 @@ parser, puts many mutants into one Verilated model, of which a number chooses on
 the place, then, of what they leave, with the image that is linked with the mutant and its tests on the CPU model;
 `./dev mutate model FOLDER` with the SystemC model, `./dev mutate host NAME` with the host library, the Ethernet server
 and the models of its buses. Number 0 is the source as it is and passes. The first failure stops; behind other tests in
-one process it counts when that test fails alone, too.
+one process it counts when that test fails alone, too (seen of all rows but the model's).
 
 - **score**: killed of killed and alive. A mutant of RTL or of the model stands in that engine alone and every
   comparison of the two is off: the tests have values of their own, the proof has its rules. This holds when both sides
@@ -45,7 +45,9 @@ one process it counts when that test fails alone, too.
 - **outside**: ended by its limit of processor time, or a crash without a report that names its place; out of the count
   too.
 - **at least**: the lower end of what the score of all mutants of the module may be, at 95 % (Wilson's interval, one
-  side), from those drawn; the score itself where all were judged.
+  side), from those drawn; the score itself where all were judged. It holds of mutants that no test was written for:
+  where tests followed on survivors of the draw (firmware, all folders) the score is of the draw, and a seed that is new
+  says less. *Together* each module weighs by its mutants.
 - **stale**, at the commit: the file has changed since it was judged.
 
 Not mutated: what is fixed before it runs (widths, parameters, generate blocks, sensitivity lists; initial values of
@@ -87,6 +89,17 @@ class Score:
         low = self.killed / counted if complete else wilson(self.killed, counted)
         slip = (self.killed + self.slip_only) / counted
         return [percent(self.killed / counted), percent(low), percent(slip) if has_slip else "-"]
+
+
+def together(modules, kind):
+    """Cells of several, each by the number of its mutants, however many are judged. `modules`: [(heads, rows)]"""
+    scored = [(heads[0]["mutants"], Score(rows)) for heads, rows in modules if Score(rows).counted()]
+    every = sum(mutants for mutants, _ in scored)
+    if every == 0:
+        return ["-", "-", "-"]
+    killed = sum(mutants * score.killed / score.counted() for mutants, score in scored) / every
+    slip = sum(mutants * (score.killed + score.slip_only) / score.counted() for mutants, score in scored) / every
+    return [percent(killed), "-", percent(slip) if kind in WITH_SLIP else "-"]
 
 
 def percent(share):
@@ -168,8 +181,9 @@ def page(results, given, modules):
         score = Score(everything)
         lines.append("| " + " | ".join(map(str, [
             "together", sum(h[0]["mutants"] for (of, _), (h, _) in results.items() if of == kind), len(everything),
-            score.equal, score.outside, score.alive, *score.cells(False, kind in WITH_SLIP), f"{seconds:.0f}",
-            "", ""])) + " |")
+            score.equal, score.outside, score.alive,
+            *together([result for (of, _), result in results.items() if of == kind], kind), f"{seconds:.0f}", "",
+            ""])) + " |")
         lines += ["", "### Survivors", ""]
         if score.alive == 0:
             lines.append("None.")

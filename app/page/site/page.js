@@ -376,7 +376,7 @@ at("add").onsubmit = event => {
   const item = at("item").value.trim(), table = at("watched");
   if (!item || watched.has(item) || watched.size >= 32) return;
   at("item").value = "";
-  const row = add(table, "tr"), wrong = ADDRESSES.test(item) ? INSTEAD : PLAIN.test(item) ? "" : EXPECTED,
+  const row = add(table, "tr"), wrong = ADDRESSES.test(item) ? INSTEAD : ASKS.test(item) || PLAIN.test(item) ? "" : EXPECTED,
     one = {item, from: wrong ? "" : ASKS.test(item) ? "port" : "memory"};
   add(add(row, "td"), "code", "", item);
   one.value = add(row, "td", "", "–");
