@@ -5,8 +5,9 @@
 // host-bus:2.2 at I52 from 0 to 15, and nothing else of another device's cycle:
 // - /RD and /WR are never low together; low and high last a step or more (rows 113, 114: 7.1 ns, 116: 8.5 ns);
 // - address, space and AA stand from the fall to a step after the rise (rows 101, 103, 115, 117 and the clock between
-//   cycles of few wait states: 5.9 ns); in a write address and data for 15 steps, 63.6 ns, at least (host-bus:2.6/7:
-//   60.4), and no longer: so R5 sees whether they are taken where they stand;
+//   cycles of few wait states: 5.9 ns); in a write the address from the fall, data from 4 steps behind it, 17.0 ns
+//   (host-bus:2.6/6: 15.9), until 15 steps behind it, 63.6 ns (2.6/7: 60.4, and the aperture), and no longer: so R5
+//   sees whether they are taken where they stand;
 // - a strobe of ours is low for 20 steps or more, 84.8 ns (row 102 with the least wait states of host-bus:2.5: 85.0 at
 //   I52 = 3, 91.4 with those of the clock's class; row 116 gives more). One of the 51.9 ns of host-bus:2.6/8 may be
 //   made 76.3 ns after its fall, behind its end: R1 fails.
@@ -86,8 +87,10 @@ module bus_sync_rules (
       assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
       // guarantee: host-bus:2.5/7, `bus: b, *`
       assume (ours_i == ours_q && (!wr_nq || addr_i == addr_q));
+      // guarantee: host-bus:2.6/7, `bus: w2, *`
+      assume (wr_nq || age_q >= 5'd15 || addr_i == addr_q);
       // guarantee: host-bus:2.6/6, `bus: w1, *`; host-bus:2.6/7, `bus: w2, *`
-      assume (wr_nq || age_q >= 5'd15 || (addr_i == addr_q && wdata_i == wdata_q));
+      assume (wr_nq || age_q >= 5'd15 || age_q <= 5'd4 || wdata_i == wdata_q);
       // guarantee: host-bus:2.6/8, `bus: s1, *`
       assume (!rise || !ours_q || age_q >= 5'd20);
     end
@@ -97,6 +100,7 @@ module bus_sync_rules (
   logic       write_q = 1'b0, read_q = 1'b0, where_q = 1'b0, data_q = 1'b0;
   logic [1:0] writes_q = 2'd0, reads_q = 2'd0;
   always @($global_clock) begin
+    if (!wr_nq && age_q <= 5'd4) data_q <= wdata_i;  // until they stand
     if (fall && ours_i) begin
       {write_q, read_q, where_q, data_q} <= {~wr_ni, ~rd_ni, addr_i, wdata_i};
       {writes_q, reads_q}                <= 4'd0;
