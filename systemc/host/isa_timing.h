@@ -48,6 +48,8 @@ constexpr TimeFs kMemcs16 = ns(66);                    // MEMCS16# is looked at 
 constexpr TimeFs kReadyToHigh = kBclk;                 // t9: IOCHRDY high for one BCLK before the command goes high
 constexpr TimeFs kLongestStretch = 15'600 * kFsPerNs;  // t10
 
-constexpr TimeFs kPollPause = 12 * kBclk;  // what a host program does between two looks at a status register
+// What a host program does between two looks at a status register: a sixteenth of the wait so far, within these.
+constexpr TimeFs kPollPause = 12 * kBclk, kLongestPollPause = ns(50'000);
+constexpr std::int64_t kLooksAWait = 16;
 
 }  // namespace brick::isa

@@ -91,7 +91,7 @@ class Bench {
         accepted(port_->command(line), line);
         break;
       default:
-        while (rotary_->put(line) == BinaryResult::kBusy) bus_->pause_polling();
+        for (const Tick begin = now(); rotary_->put(line) == BinaryResult::kBusy;) bus_->pause_polling(begin);
         break;
     }
     ++given_;

@@ -14,10 +14,10 @@ constexpr char kMoreFollows = ' ';  // in the last place of a piece that is not 
 }  // namespace
 
 bool DpramPort::wait_free(std::uint32_t offset, std::uint16_t bits, Tick timeout) {
-  const Tick limit = ram_.now() + timeout;
+  const Tick begin = ram_.now(), limit = begin + timeout;
   while ((ram_.read(offset) & bits) != 0) {
     if (ram_.now() >= limit) return false;
-    ram_.pause();
+    ram_.pause(begin);
   }
   return true;
 }
@@ -61,10 +61,10 @@ std::optional<DpramPort::Response> DpramPort::look() const {
 }
 
 std::optional<DpramPort::Response> DpramPort::take(Tick timeout) {
-  const Tick limit = ram_.now() + timeout;
+  const Tick begin = ram_.now(), limit = begin + timeout;
   std::optional<Response> response = look();
   while (!response && ram_.now() < limit) {
-    ram_.pause();
+    ram_.pause(begin);
     response = look();
   }
   if (response) ram_.write(DPRAM_RESPONSE_CONTROL, 0);

@@ -49,14 +49,14 @@ void DpramReports::choose_systems(unsigned count) {
 
 bool DpramReports::begin(std::uint32_t busy, std::uint32_t ready, Tick timeout) {
   if (!heeds_) return true;
-  const Tick limit = ram_.now() + timeout;
+  const Tick begin = ram_.now(), limit = begin + timeout;
   ram_.write(busy, DPRAM_HOST_BUSY);
   while ((ram_.read(ready) & DPRAM_DATA_READY) == 0) {
     if (ram_.now() >= limit) {
       ram_.write(busy, 0);
       return false;
     }
-    ram_.pause();
+    ram_.pause(begin);
   }
   return true;
 }

@@ -1,5 +1,6 @@
 #include "testbench/host/host_bus.h"
 
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -98,21 +99,26 @@ void HostBus::open_port() {
   io_write(regs::host_io::kData6, 0);
 }
 
+// A short wait is lengthened by little, a long one costs few looks.
+void HostBus::pause_polling(Tick since) {
+  pause(std::clamp(tick_to_fs(now() - since) / isa::kLooksAWait, isa::kPollPause, isa::kLongestPollPause));
+}
+
 bool HostBus::put_char(std::uint8_t c, Tick timeout) {
-  const Tick limit = now() + timeout;
+  const Tick begin = now(), limit = begin + timeout;
   while (!(port_status() & kTxde)) {
     if (now() >= limit || tripped()) return false;
-    pause_polling();
+    pause_polling(begin);
   }
   io_write(regs::host_io::kData7, c);
   return true;
 }
 
 std::optional<std::uint8_t> HostBus::get_char(Tick timeout) {
-  const Tick limit = now() + timeout;
+  const Tick begin = now(), limit = begin + timeout;
   while (!(port_status() & kRxdf)) {
     if (now() >= limit || tripped()) return std::nullopt;
-    pause_polling();
+    pause_polling(begin);
   }
   return io_read(regs::host_io::kData7);
 }

@@ -1,5 +1,8 @@
 // The host's bus cycles against the table of host-bus:3.4. Times are taken from the edges that first see a change, so
 // they are known to one tick (8.5 ns).
+#include <algorithm>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "testbench/host/host_bus.h"
@@ -78,6 +81,23 @@ TEST_F(HostBusTest, MemoryCycleIsSixteenBitsWide) {
   const auto low = [](const Change& c) { return c.before.isa_memr_n && !c.after.isa_memr_n; };
   const auto high = [](const Change& c) { return !c.before.isa_memr_n && c.after.isa_memr_n; };
   EXPECT_GE(when(high) - when(low), 219 - kTickNs) << "MEMR# low";
+}
+
+// A sixteenth of the wait so far, but twelve clocks of the bus at least, 1.44 us, and 50 us at most: ten looks in the
+// first 23 us, then each a seventeenth later than the one before, 59 up to 0.8 ms, then 378 in 19.2 ms.
+TEST_F(HostBusTest, ALongWaitCostsFewLooksAndAddsASixteenth) {
+  constexpr double kCycleUs = 0.84, kShortestUs = 1.44, kLongestUs = 50, kTickUs = kTickNs / 1000;
+  EXPECT_FALSE(bus.get_char(ns_to_ticks(20'000'000)));
+  std::vector<double> looks;
+  for (const Change& c : fake.changes)
+    if (read_low(c)) looks.push_back(static_cast<double>(c.seen) * kTickUs);
+  for (std::size_t n = 1; n < looks.size(); ++n) {
+    const double waited = looks[n - 1] + kCycleUs;
+    const double pause = std::clamp(waited / 16, kShortestUs, kLongestUs);
+    EXPECT_NEAR(looks[n] - looks[n - 1], pause + kCycleUs, 0.3) << "behind " << waited << " us";
+  }
+  EXPECT_GE(looks.size(), 20'000 / (kLongestUs + kCycleUs + kTickUs));
+  EXPECT_LE(looks.size(), 10u + 59u + 378u + 3u);
 }
 
 TEST_F(HostBusTest, WatchSeesEveryEdgeDuringACycle) {
