@@ -24,13 +24,19 @@ def git(root, *arguments):
     return done.stdout if done.returncode == 0 else ""
 
 
-def commit_problems(root, commit):
-    summary, _, body = git(root, "log", "-1", "--format=%B", commit).strip().partition("\n")
-    short = commit[:10]
+def commits_of(root, span):
+    """(hash, message, files that it changes) of each, merges apart."""
+    for commit in git(root, "log", "--no-merges", "--name-only", "--format=%x01%H%x00%B%x00", span).split("\x01")[1:]:
+        name, message, files = commit.split("\0")
+        yield name, message.strip(), files.split("\n")
+
+
+def commit_problems(name, message, files):
+    summary, _, body = message.partition("\n")
+    short = name[:10]
     if len(summary) > LONGEST or not SUMMARY.match(summary):
         yield f"{short}: summary '{summary}'; expected 'area: what it does' in {LONGEST} characters or fewer"
-    changed = git(root, "show", "--format=", "--name-only", commit).splitlines()
-    if any(CODE.search(file) for file in changed) and not body.strip():
+    if any(CODE.search(file) for file in files) and not body.strip():
         yield f"{short} {summary}: changes code and does not say why in its body"
 
 
@@ -43,8 +49,8 @@ def main():
     if shallow != "false" or not first:
         print("no history back to the commit that brought this check: nothing to judge")
         sys.exit(0)
-    commits = git(root, "rev-list", "--no-merges", f"{first[-1]}..HEAD").split()
-    finish(f"{len(commits)} commits", [problem for commit in commits for problem in commit_problems(root, commit)])
+    commits = list(commits_of(root, f"{first[-1]}..HEAD"))
+    finish(f"{len(commits)} commits", [problem for commit in commits for problem in commit_problems(*commit)])
 
 
 if __name__ == "__main__":
