@@ -17,7 +17,7 @@ import pathlib
 import re
 import tomllib
 
-from mutant import hash_of
+from common import hash_of
 from runner import Tests
 
 FOLDER = pathlib.Path(__file__).parent / "planted"

@@ -17,8 +17,8 @@ import image
 import overlay
 import runner
 import schemata
-from common import ROOT
-from mutant import hash_of, mutants_of, sources_of
+from common import ROOT, hash_of
+from mutant import mutants_of, sources_of
 from runner import ALIVE, EQUAL, Tests, Verdict
 
 ZERO_LIMIT, COMPILE_LIMIT = 300, 120  # s

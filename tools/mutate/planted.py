@@ -14,8 +14,8 @@ import overlay
 import records
 import runner
 import schemata
-from common import ROOT
-from mutant import Mutant, hash_of
+from common import ROOT, hash_of
+from mutant import Mutant
 from runner import ALIVE, KILLED
 
 FOLDER = records.FOLDER / "planted"

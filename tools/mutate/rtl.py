@@ -10,8 +10,9 @@ import proofs
 import runner
 import schemata
 import verilog
+from common import hash_of
 from equal import Filter
-from mutant import hash_of, mutants_of
+from mutant import mutants_of
 from runner import ALIVE, EQUAL, KILLED, BadBuild, Verdict
 
 FOLDER = pathlib.Path(__file__).parent

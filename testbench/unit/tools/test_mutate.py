@@ -20,6 +20,7 @@ except ImportError as missing:
     print(f"skipped: {missing.name} is not installed (./dev setup)")
     sys.exit(77)
 
+import common  # noqa: E402
 import cpp_source  # noqa: E402
 import equal  # noqa: E402
 import mutant  # noqa: E402
@@ -362,7 +363,7 @@ class Reports(unittest.TestCase):
         row = {**self.ROW, "status": "killed", "stage": "tests"}
         modules = {"rtl": dict.fromkeys(("now", "before"), plan.choose("rtl", ["ssi_edges"])[0])}
         results = {("rtl", name): ([{**self.HEAD, "source": source}], [row]) for name, source in (
-            ("now", mutant.hash_of(TOOLS.parent / self.HEAD["file"])), ("before", "0123456789abcdef"))}
+            ("now", common.hash_of(TOOLS.parent / self.HEAD["file"])), ("before", "0123456789abcdef"))}
         text = report.page(results, {}, modules)
         self.assertRegex(text, r"`now` .* 3 \| 1 \| c \|")
         self.assertRegex(text, r"`before` .* 3 \| 1 \| c, stale \|")
