@@ -18,7 +18,6 @@ from common import ROOT, hash_of
 from mutant import Mutant
 from runner import ALIVE, KILLED
 
-FOLDER = records.FOLDER / "planted"
 OUT = ROOT / "build/mutate/planted"
 BOARDS = {"unit_board", "unit_cosim"}  # programs on whole boards of RTL
 COMPARE = {"rtl": "off", "systemc": "model"}  # by the folder that the bug stands in: what judges it, as for mutants
@@ -130,7 +129,7 @@ def known_of(path, inputs):
 
 def judged(group, options):
     """The rows of its bugs."""
-    path = FOLDER / f"{group.name}.jsonl"
+    path = bugs.RESULTS / f"{group.name}.jsonl"
     inputs = group.inputs()
     known = known_of(path, inputs)
     rows = {key: row for key, row in known.items() if key in {bug.key for bug in bugs.read()}}
