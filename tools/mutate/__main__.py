@@ -64,6 +64,7 @@ def arguments():
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release", help="the built tree")
     parser.add_argument("--jobs", type=positive, default=int(os.environ.get("BRICK_JOBS", os.cpu_count() or 2)))
     options = parser.parse_args()
+    options.build = options.build.resolve()  # commands run in it
     if options.seed is None and options.kind not in ("again", "planted"):
         options.seed = 1
     if options.all and options.count:
@@ -82,7 +83,7 @@ def run(modules, options):
         skip(f"{missing.name} is not installed (./dev setup)")
 
     def judge(module):
-        session = Session(judges.of(module, options.build), options)
+        session = Session(judges.of(module, options.build, "judged"), options)
         if options.changed and session.is_fresh():
             return 0
         session.run()

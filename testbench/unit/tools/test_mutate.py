@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """The mutation tool on small texts: which places its parser finds, what it writes, how it judges what programs say."""
 
+import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import unittest
 from typing import ClassVar
 from unittest import mock
@@ -23,8 +26,10 @@ except ImportError as missing:
 import common  # noqa: E402
 import cpp_source  # noqa: E402
 import equal  # noqa: E402
+import judges  # noqa: E402
 import mutant  # noqa: E402
 import plan  # noqa: E402
+import planted  # noqa: E402
 import proofs  # noqa: E402
 import records  # noqa: E402
 import report  # noqa: E402
@@ -32,6 +37,7 @@ import runner  # noqa: E402
 import schemata  # noqa: E402
 import session  # noqa: E402
 import verilog  # noqa: E402
+import workplace  # noqa: E402
 
 import rtl  # noqa: E402
 
@@ -311,13 +317,43 @@ class Fresh(unittest.TestCase):
         module = plan.choose("rtl", ["ssi_edges"])[0]
         with tempfile.TemporaryDirectory() as folder:
             (pathlib.Path(folder) / "bin").mkdir()
-            judge = rtl.Judge(TOOLS.parent, pathlib.Path(folder), module)
+            judge = rtl.Judge(TOOLS.parent, pathlib.Path(folder), module, "judged")
             for tests in {t.program for stage in judge.stages for t in stage.tests}:
                 (judge.tree / "bin" / tests).write_text("")
             with mock.patch.object(rtl, "hash_of", lambda *parts: parts):
                 parts = judge.inputs()
         for name in ("mutate/runner.py", "mutate/verilog.py", "mutate/schemata.py", "prove.py"):
             self.assertIn(TOOLS / name, parts)
+
+
+class Workplaces(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.tree = pathlib.Path(folder.name)
+
+    def test_the_second_waits_for_the_first(self):
+        folder = workplace.folder_of(self.tree, "again", "rtl_m")
+        first, begin = workplace.claimed(folder), time.monotonic()
+        threading.Timer(1, first.close).start()
+        workplace.claimed(folder, 60).close()
+        self.assertGreaterEqual(time.monotonic() - begin, 1)
+
+    def test_it_does_not_wait_without_an_end(self):
+        said = f"{self.tree}: process {os.getpid()}, another .* for 0.1 s; wait for its end, or end it"
+        with workplace.claimed(self.tree), self.assertRaisesRegex(runner.BadBuild, said):
+            workplace.claimed(self.tree, 0.1)
+
+    def test_a_session_is_not_in_the_way_of_a_test(self):
+        """Each below its build tree; what both could build is in two folders."""
+        module, other = plan.choose("rtl", ["ssi_edges"])[0], self.tree / "other"
+        with mock.patch.object(workplace, "claimed"), mock.patch.object(planted.overlay, "Program"):
+            found = [judges.of(module, tree, use).out for tree in (self.tree, other) for use in ("judged", "again")]
+            found += [planted.Group("unit_ssi", [], tree, use).out for tree in (self.tree, other)
+                      for use in ("planted", "planted_drawn")]
+        self.assertEqual([self.tree in path.parents for path in found], [True] * 8)
+        self.assertEqual([other in path.parents for path in found], [False, False, True, True] * 2)
+        self.assertEqual(len(set(found)), 8)
 
 
 class Reports(unittest.TestCase):
