@@ -54,7 +54,7 @@ def main(modules, options):
             by = rows[mutant.key]["by"]
             verdict = judge.again(mutant, by)
             if verdict is None:
-                print(f"{mutant.file}:{mutant.line}: was killed by {by}, which is no more")
+                print(f"{mutant.file}:{mutant.line}: was killed by {by}, which does not judge it now")
                 continue
             count += 1
             if verdict.status != KILLED:

@@ -175,6 +175,8 @@ class Judge:
         tests = Tests(name, test)
         if name in [of_image.program for of_image in self.module.image]:
             verdicts = self.image.again(mutant, self.sources[mutant.file], tests)
+            if verdicts is None:
+                return None
         elif name in self.programs:
             if name not in self.built:
                 self.built[name] = self.program(name)
