@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The mutation tool on small texts: which places its parser finds, what it writes, how it judges what programs say."""
 
+import dataclasses
 import os
 import pathlib
 import re
@@ -298,20 +299,37 @@ class Fresh(unittest.TestCase):
             self.assertFalse(self.fresh({**head, **other}), other)
         self.assertTrue(self.fresh({**head, "count": None}, all=True))
 
-    def test_renewed_what_was_killed_stays_while_the_sources_do(self):
+    RENEWED = (  # status, stage, what killed it, whether that is there now and judges
+        ("killed", "tests", "unit_a: Of.Work", True), ("killed", "tests", "unit_a: All/Of.Each/1", True),
+        ("killed", "board", "unit_a: Of.Work", True), ("killed", "proof", "proof pic_8259: R1", True),
+        ("killed", "tests", "unit_a: Of.Gone", False), ("killed", "tests", "unit_b: Of.Work", False),
+        ("killed", "image", "unit_a: Of.Work", False), ("killed", "slip", "unit_a: Of.Work", False),
+        ("killed", "proof", "proof pic_8259: R999", False), ("killed", "proof", "proof dpram: R1", False),
+        ("killed", "tests", "unit_a: /m.c:3:4: runtime error: index 5", False),
+        ("alive", "", "", False), ("equal", "filter", "proved equal", False))
+
+    def test_renewed_what_tests_kill_that_are_there_stays_while_the_sources_do(self):
         """Of other inputs; seed and count are those of the results."""
-        rows = [{**Reports.ROW, "number": n, "line": n, "text": str(n), "status": status}
-                for n, status in ((1, "killed"), (2, "alive"), (3, "equal"))]
+        rows = [{**Reports.ROW, "number": n, "line": n, "text": str(n), "status": status, "stage": stage, "by": by}
+                for n, (status, stage, by, _) in enumerate(self.RENEWED)]
         judge = mock.Mock(**{"inputs.return_value": "y"})
-        judge.module.kind, judge.module.name, judge.module.file = "rtl", "m", "rtl/host/pic_8259.sv"
+        judge.module = dataclasses.replace(plan.choose("rtl", ["pic_8259"])[0], name="m", proof="pic_8259", image=(),
+                                           opinion=(runner.Tests("unit_a", "*"),), board=(runner.Tests("unit_a", "*"),),
+                                           slip=(runner.Tests("unit_a", "*"),))
         options = mock.Mock(part=None, all=False, count=None, seed=1, renew=True)
         head = {"inputs": "x", "source": "s", "seed": 5, "count": 3}
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
+            judge.tree = pathlib.Path(folder)
+            (judge.tree / "bin").mkdir()
+            listed = "Of.\\n  Work\\nAll/Of.\\n  Each/0  # GetParam() = 0\\n  Each/1  # GetParam() = 1\\n"
+            (judge.tree / "bin/unit_a").write_text(f"#!/bin/sh\nprintf '{listed}'\n")
+            (judge.tree / "bin/unit_a").chmod(0o755)
             records.write(records.path_of("rtl", "m", None), head, rows)
-            for source, kept in (("s", {1}), ("other", set())):
+            there = {n for n, (*_, there) in enumerate(self.RENEWED) if there}
+            for source, kept in (("s", there), ("other", set())):
                 with mock.patch.object(session, "source_hash", lambda *_, now=source: now):
                     one = session.Session(judge, options)
-                self.assertEqual((set(one.known), one.seed, one.count, len(one.once)), (kept, 5, 3, 3))
+                self.assertEqual((set(one.known), one.seed, one.count, len(one.once)), (kept, 5, 3, len(rows)))
 
     def test_what_judges_is_an_input(self):
         module = plan.choose("rtl", ["ssi_edges"])[0]
