@@ -27,9 +27,9 @@ brick_add_check(lint.commits tools/check_commits.py)  # a commit that changes co
 brick_add_check(pins.fresh rtl/pins/generate.py --check)  # what is made of the rows of pins, and board_top's ports
 brick_add_check(docs.links tools/check_links.py)
 brick_add_check(docs.figures tools/check_figures.py)
-brick_add_check(docs.coverage tools/coverage.py --check)  # a row for every module, model and folder
+brick_add_check(docs.coverage tools/coverage.py --check)  # its form; rows stale or absent are named
 brick_add_check(docs.mutation tools/mutate report --check)  # made of the results, no reason of a dead mutant
-brick_add_check(mutation.planted tools/mutate planted --check)  # they apply, and docs/rules.md counts them
+brick_add_check(mutation.planted tools/mutate planted --check)  # they apply, none was missed, docs/rules.md counts them
 brick_add_check(docs.citations tools/check_citations.py)  # of the data sheet: each leads to a section, a rule
 brick_add_check(trace.requirements tools/traceability.py)
 brick_add_check(formal.joints tools/joints.py)  # each assumption of a proof names its guarantee

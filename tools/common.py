@@ -1,7 +1,9 @@
 """What the scripts in this folder share: where the tree is, which files are sources, how a check reports."""
 
 import datetime
+import hashlib
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -32,6 +34,20 @@ def tracked(root):
         found = [path.relative_to(root) for path in root.rglob("*")]
         found = [path for path in found if not products & set(path.parts[:2])]
     return sorted(path for path in found if (root / path).is_file() and not (root / path).is_symlink())
+
+
+def without_comments(text):
+    """Of SystemVerilog."""
+    return re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.S)
+
+
+def hash_of(*parts):
+    """Of bytes, texts and files, as hexadecimal digits."""
+    digest = hashlib.sha256()
+    for part in parts:
+        data = part if isinstance(part, bytes) else part.encode() if isinstance(part, str) else part.read_bytes()
+        digest.update(hashlib.sha256(data).digest())
+    return digest.hexdigest()[:16]
 
 
 def as_of(root):

@@ -7,9 +7,12 @@ a model; a point counts as often as in the life that reached it most); beside th
 BUILD/missed.txt lists what was not reached. The page goes to the standard output, with --write to docs/coverage.md as
 well; TEXT says there which tests ran.
 
-Every module, model and folder of the tree has a row, whether a test reached it or not:
-coverage.py --check   the page has them all, and no others
-coverage.py --rows    gives the page those that it lacks, as "not in this run", and takes away those that are gone
+Every module, model and folder of the tree has a row, whether a test reached it or not. The row of a module holds a
+hash of the source that was measured, without comments and blanks:
+coverage.py --check   names rows that the page lacks or has too many, modules that were not measured, and those whose
+                      source is another now; --release: they fail
+coverage.py --rows    gives the page the rows that it lacks, as "not in this run", takes away those that are gone and
+                      marks those whose source is another now
 """
 
 import argparse
@@ -24,13 +27,15 @@ import sys
 import textwrap
 import xml.etree.ElementTree
 
-from common import ROOT, as_of, files, finish
+from common import ROOT, as_of, files, finish, hash_of, without_comments
 
 PAGE, PLAN = "docs/coverage.md", "docs/verification-plan.md"
 OURS = re.compile(r"(app|systemc|firmware|testbench/(?:benches|checkers|host|plant))/")
 MODELS = ("systemc/board", "systemc/host", "systemc/macro_ic", "systemc/servo_ic")
 NOT_RUN, NO_COUNTER = "not in this run", "no test reached, or nothing to count"
-HEADS = {"modules": "| module or model | lines of the RTL | bits | lines of the model |\n|---|---|---|---|\n",
+STALE = ", stale"
+HEADS = {"modules": "| module or model | lines of the RTL | bits | lines of the model | source of the RTL |\n"
+                    "|---|---|---|---|---|\n",
          "folders": "| folder | lines |\n|---|---|\n"}
 Reached = collections.namedtuple("Reached", "reached all")
 
@@ -131,6 +136,18 @@ def folder_rows(root, lines):
     return {folder: (reached(times),) for folder, times in sorted(found.items())}
 
 
+def source_hash(text):
+    """Of what of a module counts: its text without comments and blanks."""
+    return hash_of(" ".join(without_comments(text).split()))
+
+
+def with_sources(root, rows):
+    """The rows of modules as texts, each with the hash of its source."""
+    rtl = {label: file for label, (file, _) in modules(root).items() if file}
+    return {label: [*cells, f"`{source_hash((root / rtl[label]).read_text())}`" if label in rtl else ""]
+            for label, cells in rows.items()}
+
+
 def shown(cell, kind):
     if cell is None:
         return ""
@@ -170,7 +187,9 @@ Lines and branches of the RTL that ran at least once in any instance, of the boa
 alone; bits that rose and fell in one instance of a module that is tested alone; lines of the SystemC model. A row
 without bits has no counters of them: those of a whole servo IC are 16 MB of generated C++. Most tests of a channel run
 in one: the bits of `channel_*` and `servo_channel` are those that the tests of its long counters reach
-(`timer_bits_test.cpp`), not what all tests do. A module that is wires alone has nothing to count.
+(`timer_bits_test.cpp`), not what all tests do. A module that is wires alone has nothing to count. The last column is a
+hash of the source that was measured, without comments and blanks; `docs.coverage` names the rows whose source is
+another now, and the plan `release` fails with them.
 
 {table("modules", of_modules)}
 ## C++ and C
@@ -192,14 +211,46 @@ def expected(root):
     return {"modules": modules(root), "folders": folders(root)}
 
 
-def check(root):
-    text, problems = (root / PAGE).read_text(), []
+def is_stale(root, file, cells):
+    """Whether a module's row is of another source than that of the tree."""
+    return f"`{source_hash((root / file).read_text())}`" != cells[-1].removesuffix(STALE)
+
+
+def misshapen(text):
+    """What is wrong with the tables, whatever the tree holds."""
+    for name, head in HEADS.items():
+        rows, columns = rows_of(text, name), head.partition("\n")[0].count("|") - 2
+        if "all" not in rows:
+            yield f"{PAGE}: no table of {name} with a row 'all'"
+        for label, cells in rows.items():
+            if len(cells) != columns:
+                yield f"{PAGE}: {label}: {len(cells) + 1} cells; expected {columns + 1}"
+
+
+def out_of_date(root, text):
+    """What the page lacks, and has of what is no more."""
     for name, labels in expected(root).items():
-        have = rows_of(text, name).keys() - {"all"}
-        problems += [f"{PAGE}: no row of {label}: ./dev coverage, or tools/coverage.py --rows, gives it one"
-                     for label in labels if label not in have]
-        problems += [f"{PAGE}: a row of {label}, which is not in the tree" for label in sorted(have - {*labels})]
-    finish(f"coverage, {len(modules(root))} modules and models", problems)
+        have = rows_of(text, name)
+        yield from (f"{PAGE}: no row of {label}: ./dev coverage, or tools/coverage.py --rows, gives it one"
+                    for label in labels if label not in have)
+        yield from (f"{PAGE}: a row of {label}, which is not in the tree"
+                    for label in sorted(have.keys() - {*labels, "all"}))
+    have = rows_of(text, "modules")
+    for label, (file, _) in modules(root).items():
+        if file and label in have:
+            if NOT_RUN in have[label][:2]:
+                yield f"{PAGE}: {label} was not measured"
+            elif is_stale(root, file, have[label]):
+                yield f"{PAGE}: {label} is stale: {file} is not what was measured"
+
+
+def check(root, release):
+    text = (root / PAGE).read_text()
+    problems = list(misshapen(text))
+    notes = [] if problems else list(out_of_date(root, text))
+    if notes and not release:
+        print(*notes, f"{len(notes)} row(s) stale or absent, which only --release fails with", sep="\n")
+    finish(f"coverage, {len(modules(root))} modules and models", problems + (notes if release else []))
 
 
 def align(root):
@@ -207,8 +258,13 @@ def align(root):
     text = (root / PAGE).read_text()
     for name, labels in expected(root).items():
         have = rows_of(text, name)
+        before = table(name, have)
         rows = {label: have.get(label) or [NOT_RUN] + [""] * (len(have["all"]) - 1) for label in [*labels, "all"]}
-        text = text.replace(table(name, have), table(name, rows))
+        for label, (file, _) in modules(root).items() if name == "modules" else ():
+            cells = rows[label]
+            if file and cells[-1]:
+                cells[-1] = cells[-1].removesuffix(STALE) + STALE * is_stale(root, file, cells)
+        text = text.replace(before, table(name, rows))
     (root / PAGE).write_text(text)
 
 
@@ -233,11 +289,14 @@ def main():
     parser.add_argument("--tests", default="")
     parser.add_argument("--write", action="store_true")
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--release", action="store_true")
     parser.add_argument("--rows", action="store_true")
     parser.add_argument("--root", type=pathlib.Path, default=ROOT)
     options = parser.parse_args()
-    if options.check or options.rows:
-        return (check if options.check else align)(options.root)
+    if options.check:
+        return check(options.root, options.release)
+    if options.rows:
+        return align(options.root)
     if options.build is None:
         parser.error("expected the folder of a coverage build, --check or --rows")
     data = sorted((options.build / "rtl").glob("*.dat"))
@@ -245,7 +304,8 @@ def main():
         sys.exit(f"coverage.py: {options.build}/rtl holds no .dat; expected the counters of a run (./dev coverage)")
     lines, points = gcov_lines(options.build), rtl_points(data)
     tests = ", ".join(filter(None, [passed(options.build / "tests.xml"), options.tests]))
-    text = page(tests, texts(module_rows(ROOT, lines, points)), texts(folder_rows(ROOT, lines)))
+    of_modules = with_sources(ROOT, texts(module_rows(ROOT, lines, points)))
+    text = page(tests, of_modules, texts(folder_rows(ROOT, lines)))
     (options.build / "missed.txt").write_text(missed(lines, points))
     print(text)
     if options.write:

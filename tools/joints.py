@@ -4,14 +4,16 @@
 A comment line stands directly above an assume, and holds for those that follow it without another line between:
   // guarantee: ITEM; ITEM
 An ITEM is one of
-  power-on                     a run begins in reset with nothing asked for; the assume looks at a flag of the run's
-                               age, started_q or awake_q
+  power-on                     a run begins in reset with nothing asked for: a flag of the run's age, started_q or
+                               awake_q, || what is assumed before it is set, so that nothing is assumed later; or
+                               flag ? later : before, where another item guarantees what comes later
+  one reset                    `rst_ni == started_q`: resets behind the first are not in the proof (docs/formal.md)
   choice                       the assume narrows what is `(* anyconst *)`
   PROOF R1, R2                 rules of another file of proofs, which are proved without a bound
   PROOF R1, a clock before: X  the same, where the neighbour's output X, a flip-flop, carries it: what is assumed at an
                                edge rests on edges before
   CITATION, `cover`            a rule of the data sheet that outside pins keep, and the cover of the checker that has
-                               judged them: results/covers.json has it, and it is not 0
+                               judged them: results/covers.json has it, and it is not 0; of a list in braces each
 A guarantee above other lines than an assume is one of a model of the neighbour, and is checked alike.
 
 Fails on an assume without a guarantee, on an item that is none, and on a circle: rules that rest on each other without
@@ -28,7 +30,10 @@ from common import ROOT, finish
 
 FOLDER = "testbench/formal"
 GUARANTEE = re.compile(r"\s*// guarantee: (.+)$")
+MORE = re.compile(r"\s*//   (\S.*)$")  # a line of it that goes on
 ASSUME = re.compile(r"\bassume *\(")
+YOUNG = re.compile(r"\bassume *\((started_q|awake_q)(?: == \d+'d\d+)? (\|\|[^?]*|\?.*)\);")
+ONE_RESET = re.compile(r"\bassume *\(rst_ni == started_q\);")
 RULES = re.compile(r"(\w+) ((?:R\d+)(?:, R\d+)*)(?:, a clock before: (\w+))?$")
 JUDGED = re.compile(rf"({CITATION.pattern}(?:, {CITATION.pattern})*), `([^`]+)`$")
 
@@ -41,6 +46,8 @@ def assumptions(text):
         said, code = GUARANTEE.match(lines[number]), re.sub(r"//.*", "", lines[number])
         if said:
             guarantee, used = said[1], False
+            while number + 1 < len(lines) and (more := MORE.match(lines[number + 1])):
+                guarantee, number = f"{guarantee} {more[1]}", number + 1
         elif ASSUME.search(code):
             first = number
             while ";" not in code and number + 1 < len(lines):  # an assume of several lines
@@ -72,10 +79,15 @@ class Joints:
         source = re.search(rf"\bassign {output} += (\w+_q);", text)
         return bool(source) and bool(re.search(rf"\b{source[1]} +<= ", text))
 
-    def item(self, name, assume, item):
+    def item(self, name, assume, item, others):
         """What is wrong with an item of a guarantee, or None."""
         if item == "power-on":
-            return None if re.search(r"\b(started|awake)_q\b", assume) else "power-on, but it looks at no flag of age"
+            form = YOUNG.search(assume)
+            if not form:
+                return "power-on, but not of the form 'started_q || what is assumed before'"
+            return "power-on, but what is assumed later has no guarantee" if form[2][0] == "?" and not others else None
+        if item == "one reset":
+            return None if ONE_RESET.search(assume) else "one reset, but not of the form 'rst_ni == started_q'"
         if item == "choice":
             free = set(re.findall(r"\(\* anyconst \*\) logic (?:\[[^\]]*\] )?(\w+)", self.texts[name]))
             named = set(re.findall(r"(?<!')\b[a-z]\w*", ASSUME.sub("", assume)))
@@ -92,13 +104,10 @@ class Joints:
                 self.edges[name].add(proof)
             return None
         if judged:
-            found = verification_plan.matching(judged[judged.re.groups], self.covers)
+            found = verification_plan.counts_of(judged[judged.re.groups], self.covers)
             silent = [cover for cover, count in found.items() if count == 0]
-            if not found or silent:
-                name = silent[0] if silent else judged[judged.re.groups]
-                return f"{name} has judged nothing ({verification_plan.COUNTED})"
-            return None
-        return "expected power-on, choice, PROOF R1, or CITATION, `cover`"
+            return f"{silent[0]} has judged nothing ({verification_plan.COUNTED})" if silent else None
+        return "expected power-on, one reset, choice, PROOF R1, or CITATION, `cover`"
 
     def circle(self):
         """Names of proofs that rest on each other at one edge, [] when there is none."""
@@ -126,8 +135,9 @@ class Joints:
                 where = f"{FOLDER}/{name}.sv:{number}"
                 if not guarantee:
                     found.append(f"{where}: no guarantee: {assume}")
-                for item in filter(None, guarantee.split("; ")):
-                    wrong = self.item(name, assume, item)
+                items = re.findall(r"(?:`[^`]*`|[^;`])+", guarantee)  # a list in a cover has such signs too
+                for item in map(str.strip, items):
+                    wrong = self.item(name, assume, item, len(items) > 1)
                     if wrong:
                         found.append(f"{where}: '{item}': {wrong}")
         circle = self.circle()

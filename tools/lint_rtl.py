@@ -16,7 +16,7 @@ import shutil
 import subprocess
 import sys
 
-from common import ROOT, files, finish, skip
+from common import ROOT, files, finish, skip, without_comments
 
 TOP = "board_top"
 SIMULATION_ONLY = {"board_sim"}  # tops for simulation, never synthesized: read by Verilator only
@@ -69,7 +69,7 @@ def module_problems(root, modules):
     """One module a file, named after it, `default_nettype none, no import, no latch, no initial block."""
     problems = []
     for file in modules:
-        text = re.sub(r"//[^\n]*|/\*.*?\*/", "", (root / file).read_text(), flags=re.S)
+        text = without_comments((root / file).read_text())
         names = re.findall(r"^\s*module\s+(\w+)", text, flags=re.M)
         if names != [file.stem]:
             problems.append(f"{file}: must hold the one module '{file.stem}', holds {names}")

@@ -3,17 +3,21 @@
 
 Each peer plays the same stimulus (testbench/benchmark/peers/peer.h) and says its checksums; those of all must agree. In
 turn, the median of --runs; a rate is of processor time, without what a run of no steps takes. --write: docs/peers.md.
-Exit status: 0 done, 1 a checksum differs or something cannot be built, 2 bad usage, 77 a simulator is not installed.
+A peer whose simulator is not installed is left out, which a line says; the page is of all.
+Exit status: 0 done, 1 a checksum differs, something cannot be built or does not end, or a page would lack a peer,
+2 bad usage, 77 nothing that was asked for is installed.
 """
 
 import argparse
 import os
 import pathlib
 import shutil
+import signal
 import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 
 from common import ROOT, as_of, skip
 
@@ -21,6 +25,7 @@ HERE = ROOT / "testbench/benchmark/peers"
 PAGE = "docs/peers.md"
 COCOTB = "cocotb==1.8.1"  # the last for Verilator 5.006
 STATE_TICKS = 60
+RUN_LIMIT, BUILD_LIMIT = 600, 1800  # s of the wall: a run takes seconds, a build minutes of a machine that is shared
 VERILATE = ["-O3", "-fno-table", "--x-assign", "fast", "--x-initial", "fast", "-Wno-fatal", "-Wno-lint", "-Wno-style"]
 
 
@@ -28,13 +33,28 @@ class Failed(Exception):
     """What cannot be built or run."""
 
 
-def run(command, **more):
+class Missing(Exception):
+    """Which simulator is not installed."""
+
+
+def run(command, limit=RUN_LIMIT, **more):
     """(standard output, seconds of the processor, those of its children included)"""
     with tempfile.TemporaryFile() as said, tempfile.TemporaryFile() as wrong:
         program = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=said, stderr=wrong,
-                                   **more)
+                                   start_new_session=True, **more)
+        late = threading.Event()
+
+        def end():
+            late.set()
+            os.killpg(program.pid, signal.SIGKILL)  # its children too
+
+        watch = threading.Timer(limit, end)
+        watch.start()
         _, status, used = os.wait4(program.pid, 0)
+        watch.cancel()
         program.returncode = os.waitstatus_to_exitcode(status)
+        if late.is_set():
+            raise Failed(f"{command[0]}: no end within {limit:g} s")
         for stream in (said, wrong):
             stream.seek(0)
         out = said.read().decode(errors="replace")
@@ -64,11 +84,11 @@ class Ours:
 class SystemC:
     def build(self, folder):
         if shutil.which("verilator") is None:
-            skip("verilator is not installed")
+            raise Missing("verilator is not installed")
         run(["verilator", "--sc", "--exe", "--build", "-j", "1", "--prefix", "Vservo_ic", "--top-module", "servo_ic",
              "-Mdir", folder, *VERILATE, "-CFLAGS", f"-O3 -std=c++17 -I{ROOT}", "-LDFLAGS", "-lsystemc",
              "-MAKEFLAGS", "OPT_FAST=-O3 OPT_GLOBAL=-O3", *listed(ROOT / "rtl"), HERE / "sc.cpp", "-o", "peer"],
-            env={**os.environ, "OBJCACHE": "ccache"})
+            limit=BUILD_LIMIT, env={**os.environ, "OBJCACHE": "ccache"})
         self.program = folder / "peer"
 
     def play(self, steps, flip):
@@ -78,14 +98,15 @@ class SystemC:
 class Icarus:
     def build(self, folder):
         if shutil.which("iverilog") is None:
-            skip("iverilog is not installed")
+            raise Missing("iverilog is not installed")
         sources = []
         for file in listed(ROOT / "rtl"):  # Icarus 11 evaluates some `always_comb` without an end; `always @*` ends
             copy = folder / file.name
             copy.write_text(file.read_text().replace("always_comb", "always @*"))
             sources.append(copy)
         self.program = folder / "bench.vvp"
-        run(["iverilog", "-g2012", "-o", self.program, "-s", "bench", *sources, HERE / "bench.sv"])
+        run(["iverilog", "-g2012", "-o", self.program, "-s", "bench", *sources, HERE / "bench.sv"],
+            limit=BUILD_LIMIT)
 
     def play(self, steps, flip):
         return run(["vvp", "-n", self.program, f"+writes={HERE / 'writes.txt'}", f"+steps={steps}", f"+flip={flip}"])
@@ -102,9 +123,9 @@ class Cocotb:
                 run([sys.executable, "-m", "venv", "--clear", folder / "venv"])
                 run([self.python, "-m", "pip", "install", "--quiet", COCOTB])
             except Failed as failed:
-                skip(f"{COCOTB} cannot be installed: {str(failed).splitlines()[-1]}")
+                raise Missing(f"{COCOTB} cannot be installed: {str(failed).splitlines()[-1]}") from failed
             mark.touch()
-        run([self.python, HERE / "cocotb_run.py", "build", folder, *listed(ROOT / "rtl")])
+        run([self.python, HERE / "cocotb_run.py", "build", folder, *listed(ROOT / "rtl")], limit=BUILD_LIMIT)
 
     def play(self, steps, flip):
         said = self.folder / "said.txt"
@@ -148,8 +169,10 @@ def measure(chosen, options):
     for _ in range(options.runs):
         for name, (_, own, peer) in chosen.items():
             flip, steps = int(name == options.flip), options.steps or own
-            _, idle = peer.play(0, flip)
-            said, busy = peer.play(steps, flip)
+            try:
+                (_, idle), (said, busy) = peer.play(0, flip), peer.play(steps, flip)
+            except Failed as failed:
+                raise Failed(f"{name}: {failed}") from failed
             sums[name] = sums_of(said)
             if steps not in sums[name]:
                 raise Failed(f"{name}: no checksum of step {steps}; it said {said[-300:]!r}")
@@ -157,6 +180,23 @@ def measure(chosen, options):
         if wrong := differing(sums):
             raise Failed(f"the peers disagree at {wrong}")
     return {name: STATE_TICKS / statistics.median(found) for name, found in seconds.items()}
+
+
+def build(chosen, tree):
+    """Those that are installed."""
+    there = {}
+    for name, (what, own, peer) in chosen.items():
+        folder = (tree / "peers" / name).resolve()
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            peer.build(folder)
+        except Missing as missing:
+            print(f"{name} is left out: {missing}", flush=True)
+            continue
+        except Failed as failed:
+            raise Failed(f"{name}: {failed}") from failed
+        there[name] = what, own, peer
+    return there
 
 
 def row(what, rate, bare):
@@ -194,21 +234,24 @@ def main():
     options = parser.parse_args()
     if options.runs < 1 or (options.steps is not None and options.steps < 1):
         parser.error("--runs and --steps: a number from 1 on")
+    if options.flip and options.flip not in options.only:
+        parser.error(f"--flip: {options.flip} does not play")
     if options.write and (options.only != known or options.steps or options.flip):
         parser.error("--write: of all peers, as they are")
     chosen = {name: entry for name, entry in peers(options.tree.resolve()).items() if name in options.only}
     try:
-        for name, (_, _, peer) in chosen.items():
-            folder = (options.tree / "peers" / name).resolve()
-            folder.mkdir(parents=True, exist_ok=True)
-            peer.build(folder)
-        rates = measure(chosen, options)
+        there = build(chosen, options.tree)
+        if not there or (options.flip and options.flip not in there):
+            skip("nothing of what was asked for is installed")
+        if options.write and len(there) < len(chosen):
+            raise Failed(f"{PAGE} is of all peers, and not written without {', '.join(sorted({*chosen} - {*there}))}")
+        rates = measure(there, options)
     except Failed as failed:
         print(f"peers: {failed}", file=sys.stderr)
         sys.exit(1)
-    print(table(chosen, rates))
+    print(table(there, rates))
     if options.write:
-        (ROOT / PAGE).write_text(page(chosen, rates))
+        (ROOT / PAGE).write_text(page(there, rates))
 
 
 if __name__ == "__main__":

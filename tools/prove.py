@@ -34,7 +34,9 @@ PREPARE = {"one": "memory_map; opt -full; async2sync; dffunmap",
            "several": "memory_collect; opt -full; clk2fflogic; memory_map -formal; opt -full"}
 # The clocks of a file with several repeat after six steps (common/proof_clocks.sv). Six steps made one, each with the
 # rule at its end, have no clock left in them, and pdr is ten times as fast.
-REDUCE = {"one": "scleanup; scorr; dc2; scleanup", "several": "scleanup; scorr; dc2; phase -F 6; scorr; dc2; scleanup"}
+AT_ONCE = {"one": 1, "several": 6}
+REDUCE = {"one": "scleanup; scorr; dc2; scleanup",
+          "several": f"scleanup; scorr; dc2; phase -F {AT_ONCE['several']}; scorr; dc2; scleanup"}
 # A cover as an assert that it is not reached, so that one search does for both.
 COVER = """(* techmap_celltype = "$cover" *) module cover_as_assert (input A, input EN);
   \\$assert _TECHMAP_REPLACE_ (.A(~A), .EN(EN));
@@ -169,15 +171,26 @@ def reached(rules, solvers):
     return steps
 
 
+def refuted(rules, solvers, label, steps):
+    """Where a rule is that pdr refutes within `steps`: found once more, in steps of one, for the waveform. That takes
+    longer, and its end does not undo the verdict."""
+    try:
+        step = solvers.search(rules.name, label, steps)
+        if step is None:
+            raise Failed("bmc3 finds it nowhere")
+        return f"at step {step}, see {solvers.trace(rules.name, label)}"
+    except Failed as failed:
+        return f"within {steps} steps, without a waveform ({str(failed).splitlines()[0]})"
+
+
 def prove(rules, solvers):
     """{rule: how it was proved}; raises where one was not."""
     how = {}
     for label in rules.english if rules.proof == "pdr" else ():
         said, step = solvers.abc(rules.name, label, f"{REDUCE[rules.clocks]}; pdr")
         if step is not None:
-            step = solvers.search(rules.name, label, (step + 1) * 6)  # its trace, in steps of one
-            trace = solvers.trace(rules.name, label)
-            raise Failed(f"{rules.path}: {label} refuted at step {step}, see {trace}: {rules.english[label]}")
+            where = refuted(rules, solvers, label, (step + 1) * AT_ONCE[rules.clocks])
+            raise Failed(f"{rules.path}: {label} refuted {where}: {rules.english[label]}")
         if "Property proved." not in said:
             raise Failed(f"{rules.path}: {label} is not proved\n{said[-2000:]}")
         frames = re.search(r"Invariant F\[(\d+)\]", said)

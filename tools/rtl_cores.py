@@ -16,7 +16,7 @@ import pathlib
 import re
 import shutil
 
-from common import ROOT, finish, skip
+from common import ROOT, finish, skip, without_comments
 from lint_rtl import SIMULATION_ONLY, rtl_files, run
 
 Block = collections.namedtuple("Block", "title page", defaults=[None])
@@ -62,7 +62,7 @@ class Rtl:
         self.root, self.packages = root, [f.stem for f in packages]
         self.file = {f.stem: f.relative_to("rtl") for f in packages + modules}
         text = {f.stem: (root / f).read_text() for f in packages + modules}
-        self.text = {name: re.sub(r"//[^\n]*|/\*.*?\*/", "", code, flags=re.S) for name, code in text.items()}
+        self.text = {name: without_comments(code) for name, code in text.items()}
         self.needs = {name: self._needs(name) for name in self.text}
 
     def _needs(self, name):

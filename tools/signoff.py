@@ -116,9 +116,9 @@ def cover_cell(rows, counted):
     shown = []
     for row in rows:
         for cover in row.covers:
-            counts = verification_plan.matching(cover.pattern, counted).values()
-            least = f"{min(counts)} of {cover.least}" if counts else f"none of {cover.least}"
-            shown.append(f"`{cover.pattern}`: {least}" + (f", the least of {len(counts)}" if len(counts) > 1 else ""))
+            counts = verification_plan.counts_of(cover.names, counted).values()
+            shown.append(f"`{cover.names}`: {min(counts)} of {cover.least}"
+                         + (f", the least of {len(counts)}" if len(counts) > 1 else ""))
         shown += [*row.words, *([f"none: {row.reason}"] if row.reason else [])]
     return "<br>".join(dict.fromkeys(shown)) or "no row of the plan names it"
 

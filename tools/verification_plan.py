@@ -1,8 +1,8 @@
 """The rows of docs/verification-plan.md: scenario, the requirements it names, its tests, its covers.
 
 A row's last cell says how often things have to happen for its pass to mean something, one of these ways:
-  `bench: name` >= N   a cover of `brick run --json` (docs/covers.md), N in all runs together; * stands for any text,
-                       and every cover that it matches needs its N. Where the row says 'every', one for each
+  `bench: name` >= N   a cover of `brick run --json` (docs/covers.md), N in all runs together. {1..3; 7; none} stands
+                       for each of its members, two of them for each pair: a cross. Each needs its N
   listed               the test goes through a list or a loop of its own and judges each case
   asserted             its stimulus is random; it fails, or goes on, when what it needs has not happened often enough
   proved               a proof has a cover for each rule, which must be reached
@@ -11,7 +11,7 @@ A row's last cell says how often things have to happen for its pass to mean some
 """
 
 import collections
-import fnmatch
+import itertools
 import json
 import re
 
@@ -19,7 +19,7 @@ PLAN, COUNTED = "docs/verification-plan.md", "results/covers.json"
 HEADS = ["scenario", "stimulus", "pass", "test", "covers"]
 WORDS = {"asserted", "listed", "proved", "static"}
 Row = collections.namedtuple("Row", "number scenario ids tests covers words reason")
-Cover = collections.namedtuple("Cover", "pattern least")
+Cover = collections.namedtuple("Cover", "names least")
 
 
 def ids_of(text):
@@ -40,7 +40,7 @@ def covers_of(cell):
     """([Cover], words, reason) of a row's last cell; what is left over of it is no part of the form."""
     reason = re.search(r"\bnone: (.+)$", cell)
     rest = cell[:reason.start()] if reason else cell
-    covers = [Cover(pattern, int(least.replace(",", ""))) for pattern, least in
+    covers = [Cover(text, int(least.replace(",", ""))) for text, least in
               re.findall(r"`([^`]+)` >= ([\d,]*\d)", rest)]
     rest = re.sub(r"`[^`]+` >= [\d,]*\d", "", rest)
     words = re.findall(r"\w[\w ]*", rest)
@@ -73,11 +73,11 @@ def problems_of(root):
     found, problems = rows(root)
     for row in found:
         where = f"{PLAN}:{row.number}: '{row.scenario}'"
+        problems += [f"{where}: `{cover.names}` >= 0 asks for nothing" for cover in row.covers if cover.least == 0]
         problems += [f"{where}: '{word}' is no cover; expected {', '.join(sorted(WORDS))}, `NAME` >= N or none: REASON"
                      for word in row.words if word not in WORDS]
         if not row.covers and not row.words and not row.reason:
             problems.append(f"{where}: no cover and no reason")
-        problems += [f"{where}: `{cover.pattern}` >= 0 asks for nothing" for cover in row.covers if cover.least == 0]
     return problems
 
 
@@ -88,10 +88,21 @@ def counted(root):
     return found["commit"], {name: sum(engines.values()) for name, engines in found["covers"].items()}
 
 
-def matching(pattern, counted):
-    """{name: count} of those that a pattern of the plan names; brackets stand for themselves."""
-    shell = re.sub(r"\[", "[[]", pattern)
-    return {name: count for name, count in counted.items() if fnmatch.fnmatchcase(name, shell)}
+def each(names):
+    """The names that a text with {members; in; braces} stands for."""
+    def members(text):
+        for member in text.split(";"):
+            ends = re.fullmatch(r"(\d+)\.\.(\d+)", member.strip())
+            yield from (str(n) for n in range(int(ends[1]), int(ends[2]) + 1)) if ends else (member.strip(),)
+
+    parts = re.split(r"\{([^}]*)\}", names)  # a text, a list, a text and so on
+    choices = [list(members(part)) if place % 2 else [part] for place, part in enumerate(parts)]
+    return ["".join(chosen) for chosen in itertools.product(*choices)]
+
+
+def counts_of(names, counted):
+    """{name: count} of all that a text stands for; 0 of what was not counted."""
+    return {name: counted.get(name, 0) for name in each(names)}
 
 
 def unreached(root):
@@ -99,10 +110,6 @@ def unreached(root):
     problems, counts = [], counted(root)[1]
     for row in rows(root)[0]:
         for cover in row.covers:
-            found = matching(cover.pattern, counts)
-            where = f"{PLAN}:{row.number}: `{cover.pattern}`"
-            if not found:
-                problems.append(f"{where}: nothing of that name was counted")
-            problems += [f"{where}: {name}: {count}; expected at least {cover.least}"
-                         for name, count in found.items() if count < cover.least]
+            problems += [f"{PLAN}:{row.number}: `{name}`: {count}; expected at least {cover.least}"
+                         for name, count in counts_of(cover.names, counts).items() if count < cover.least]
     return problems

@@ -115,10 +115,16 @@ class Regression {
     const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
     Pool pool(options_.jobs != 0 ? options_.jobs : processors);
     std::size_t next = 0;
+    bool alone = false;  // what runs
     done_ = taken_over_;
     while (asked_to_stop == 0) {
       while (!pool.full() && next < plan_.runs.size() && !late()) {
-        if (!results_[next]) begin(pool, next, plan_.runs[next], folder_of(plan_.runs[next]));
+        const Run& run = plan_.runs[next];
+        if (!results_[next]) {
+          if (!pool.empty() && (alone || run.alone)) break;
+          begin(pool, next, run, folder_of(run));
+          alone = run.alone;
+        }
         ++next;
       }
       if (pool.empty()) break;
@@ -148,7 +154,8 @@ class Regression {
 
   // In arrays of tasks, each as long as asked for, until nothing is left that no task has begun. How long a run takes
   // is known from those of its kind; a task that was wrong about it leaves runs for the next array. What has begun and
-  // left no result was lost with its task and is not begun again: it may be what the machine died of.
+  // left no result was lost with its task and is not begun again: it may be what the machine died of. What runs alone
+  // comes last, one task an array.
   void make_on_cluster() {
     done_ = taken_over_;
     std::vector<std::size_t> waiting;
@@ -191,9 +198,12 @@ class Regression {
       }
     std::vector<Task> tasks;
     double length = options_.task_seconds;
+    const bool alone =
+        std::all_of(waiting.begin(), waiting.end(), [this](std::size_t i) { return plan_.runs[i].alone; });
     for (const std::size_t i : waiting) {
+      if (plan_.runs[i].alone != alone) continue;
       if (length >= options_.task_seconds) {
-        if (tasks.size() == Cluster::kMostTasks) break;
+        if (tasks.size() == (alone ? 1 : Cluster::kMostTasks)) break;
         tasks.push_back({{}, options_.task_seconds, until()});
         length = 0;
       }

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kPlanKeys{"title", "row"};
 const std::vector<std::string> kBenchKeys{"bench", "engine",   "board",    "seeds", "fresh",
                                           "size",  "aperture", "firmware", "limit", "negative"};
-const std::vector<std::string> kCommandKeys{"name", "command", "seeds", "fresh", "repeat", "limit"};
+const std::vector<std::string> kCommandKeys{"name", "command", "seeds", "fresh", "repeat", "limit", "alone"};
 
 constexpr std::size_t kMostRuns = 1'000'000;
 constexpr std::int64_t kMostSeeds = 100'000;  // of a row
@@ -152,6 +152,7 @@ class Reader {
     if (!is_new && plan_.runs[at->second].words == run.words) {  // two rows ask for it
       Run& before = plan_.runs[at->second];
       before.limit_seconds = std::max(before.limit_seconds, run.limit_seconds);
+      before.alone = before.alone || run.alone;
       return;
     }
     if (!is_new) {
@@ -253,6 +254,7 @@ class Reader {
     if (run.group.empty()) row.fail(row.need("name"), "name", "a name");
     run.column = "command";
     run.limit_seconds = limit_of(row);
+    run.alone = row.flag("alone");
     const std::int64_t times = row.has("repeat") ? row.integer("repeat", 1, kMostSeeds, "1 to 100000 times") : 1;
     for (const std::uint64_t seed : seeds_of(row, draw_))
       for (std::int64_t time = 1; time <= times; ++time) {

@@ -19,6 +19,7 @@ struct Run {
   std::uint64_t seed = 0;          //
   std::vector<std::string> words;  // program and arguments; those of `brick` are without --json
   double limit_seconds = 0;        // of the wall
+  bool alone = false;              // no other run of the plan beside it
   bool bench() const { return !engine.empty(); }
 };
 

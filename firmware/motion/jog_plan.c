@@ -87,6 +87,7 @@ static void to_target(struct own_path* path, struct jog_motion* m, double speed)
 static void build(struct own_path* path, struct jog_motion* m, struct own_path_state from) {
   slice_pause();
   own_path_begin(path, math_to_integer(from.position + 0.5));
+  slice_pause();
   const double fastest = math_absolute(from.speed) + math_absolute(m->speed), least = fastest / LONGEST_CHANGE_MS;
   slice_pause();
   if (!(m->limits.acceleration > least)) m->limits.acceleration = least;

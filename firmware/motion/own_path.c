@@ -24,8 +24,16 @@ static void set_time(struct own_piece* piece, int64_t time) {
   piece->shift = __builtin_clzll((uint64_t)piece->time) - 32;
   const double normal = math_scale((double)piece->time, piece->shift - 32); /* [0.5, 1) */
   slice_pause();
-  const int64_t inverse = math_to_integer(math_scale(1.0 / normal, 31));
+  const double of_one = 1.0 / normal;
+  slice_pause();
+  const int64_t inverse = math_to_integer(math_scale(of_one, 31));
   piece->inverse = inverse > (int64_t)UINT32_MAX ? UINT32_MAX : (uint32_t)inverse;
+}
+
+/* No more than one product or division from pause to pause. */
+static double paused(double value) {
+  slice_pause();
+  return value;
 }
 
 static uint8_t shape_of(double acceleration, double jerk) {
@@ -43,38 +51,44 @@ static void add(struct own_path* path, double time, double speed, double acceler
   piece->speed = speed;
   piece->shape = shape_of(acceleration, jerk);
   slice_pause();
-  const double linear = speed * time, square = acceleration * time * time / 2.0;
+  const double linear = speed * time;
+  const double square = paused(paused(acceleration * time) * time) / 2.0;
   slice_pause();
-  const double volume = jerk * time * time * time;
-  slice_pause();
-  const double cube = volume / 6.0;
+  const double cube = paused(paused(paused(jerk * time) * time) * time) / 6.0;
   slice_pause();
   path->exact += linear + square + cube;
   slice_pause();
   const int64_t end = path->start + nearest(path->exact);
   cubic->start = path->end;
+  slice_pause();
   cubic->square = nearest(square);
   cubic->cube = nearest(cube);
+  slice_pause();
   cubic->linear = end - cubic->start - cubic->square - cubic->cube;
   path->end = end;
 }
 
+/* What only an S-curve needs stands behind its test: the compiler puts it there, pauses or not. */
 void own_path_change(struct own_path* path, const struct speed_limits* l, double from, double to) {
-  const double time = speed_change_time(l, from, to), s = l->s_curve, level = time - 2.0 * s;
+  const double time = speed_change_time(l, from, to), s = l->s_curve;
   if (time <= 0.0) return;
   slice_pause();
-  const double acceleration = (to - from) / (time - s);
+  const double change = to - from, lasts = time - s;
   slice_pause();
-  const double gained = acceleration * s / 2.0;
+  const double acceleration = change / lasts;
   slice_pause();
-  if (s > 0.0) {
-    const double jerk = acceleration / s;
-    add(path, s, from, 0.0, jerk);
-    if (level > 0.0) add(path, level, from + gained, acceleration, 0.0);
-    add(path, s, to - gained, acceleration, -jerk);
-  } else {
+  if (!(s > 0.0)) {
     add(path, time, from, acceleration, 0.0);
+    return;
   }
+  const double level = time - 2.0 * s;
+  slice_pause();
+  const double gained = paused(acceleration * s) / 2.0;
+  slice_pause();
+  const double jerk = acceleration / s;
+  add(path, s, from, 0.0, jerk);
+  if (level > 0.0) add(path, level, from + gained, acceleration, 0.0);
+  add(path, s, to - gained, acceleration, -jerk);
 }
 
 void own_path_ramp(struct own_path* path, double from, double time) {

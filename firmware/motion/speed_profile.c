@@ -27,7 +27,9 @@ double speed_change_time(const struct speed_limits* l, double from, double to) {
 static double change_distance(const struct speed_limits* l, double from, double to) {
   const double time = speed_change_time(l, from, to);
   slice_pause();
-  return (from + to) / 2.0 * time;
+  const double mean = (from + to) / 2.0;
+  slice_pause();
+  return mean * time;
 }
 
 /* From `from` over `to` to rest, without a stay. */
@@ -38,44 +40,64 @@ static double shortest_distance(const struct speed_limits* l, double from, doubl
 /* The speed v above `from` and 0 at which both changes cover `distance`. Each is half of (v - from)(v + from)/Ixx19 +
  * Ixx21 (v + from) or, while it has to last Ixx20, half of Ixx20 (v + from): together square v^2 + linear v + rest. */
 static double peak_speed(const struct speed_limits* l, double from, double distance) {
+  slice_pause();
   const double slow = l->acceleration * (l->shortest - l->s_curve); /* changes up to it last `shortest` */
   slice_pause();
   const double begin = from > 0.0 ? from : 0.0, first = from + slow > begin ? from + slow : begin;
-  const bool second_slow = slow <= begin ? false : distance <= shortest_distance(l, from, slow);
-  const bool first_slow = from + slow <= begin ? false : distance <= shortest_distance(l, from, first);
   slice_pause();
-  double square = 0.0, linear = 0.0, rest = -distance;
-  const double half = 0.5 / l->acceleration;
+  const bool second_slow = slow <= begin ? false : distance <= shortest_distance(l, from, slow);
+  slice_pause();
+  const bool first_slow = first <= begin ? false : distance <= shortest_distance(l, from, first);
   slice_pause();
   const double time = (first_slow ? l->shortest : l->s_curve) / 2.0;
-  linear = time + (second_slow ? l->shortest : l->s_curve) / 2.0;
-  rest += time * from;
+  const double linear = time + (second_slow ? l->shortest : l->s_curve) / 2.0;
   slice_pause();
-  if (!second_slow) square = half;
-  if (!first_slow) {
-    square += half;
-    rest -= from * from * half;
+  double square = 0.0, rest = time * from - distance;
+  slice_pause();
+  if (!first_slow || !second_slow) {
+    const double half = 0.5 / l->acceleration;
+    slice_pause();
+    if (!second_slow) square = half;
+    if (!first_slow) {
+      square += half;
+      const double squared = from * from;
+      slice_pause();
+      rest -= squared * half;
+    }
   }
   slice_pause();
-  const double inside = linear * linear - 4.0 * square * rest;
+  const double product = 4.0 * square * rest;
+  slice_pause();
+  const double inside = linear * linear - product;
   slice_pause();
   const double root = math_square_root(larger(inside, 0.0));
   slice_pause();
   const double below = linear + root;
   slice_pause();
-  return -2.0 * rest / below;
+  const double speed = -2.0 * rest / below;
+  slice_pause();
+  return speed;
+}
+
+/* At `speed` as long as the rest of a distance takes. */
+static struct speed_plan stay_for(double speed, double rest) {
+  slice_pause();
+  const struct speed_plan plan = {speed, rest / speed};
+  slice_pause();
+  return plan;
 }
 
 /* `distance` beyond where it would stop, `from` upwards or downwards, `top` above 0. */
 static struct speed_plan plan_forward(const struct speed_limits* l, double from, double distance, double top) {
   const double at_top = shortest_distance(l, from, top);
   slice_pause();
-  if (distance >= at_top) return (struct speed_plan){top, (distance - at_top) / top};
+  if (distance >= at_top) return stay_for(top, distance - at_top);
   slice_pause();
   /* Too near to change the speed and back: it is kept until it is time to stop. */
   if (from > 0.0) {
     const double stop = change_distance(l, from, 0.0);
-    if (from >= top || distance < stop + from * l->shortest) return (struct speed_plan){from, (distance - stop) / from};
+    slice_pause();
+    if (from >= top || distance < stop + from * l->shortest) return stay_for(from, distance - stop);
   }
   return (struct speed_plan){peak_speed(l, from, distance), 0.0};
 }

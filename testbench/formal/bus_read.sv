@@ -29,7 +29,8 @@ module bus_read_rules (
   logic clk_q = 1'b0, started_q = 1'b0, rd_nq = 1'b1;
   always @($global_clock) {clk_q, started_q, rd_nq} <= {~clk_q, 1'b1, rd_ni};
   // guarantee: power-on
-  always_comb assume (rst_ni == started_q && (started_q || rd_ni));
+  always_comb assume (started_q || !rst_ni);
+  always_comb assume (started_q || rd_ni);
 
   logic [1:0]  rd_falls, wr_falls;
   logic [23:0] data;

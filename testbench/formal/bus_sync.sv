@@ -77,21 +77,23 @@ module bus_sync_rules (
     awake_q <= awake_q + {3'd0, awake_q != 4'd15};
   end
   always_comb begin
-    // guarantee: power-on
+    // guarantee: one reset
     assume (rst_ni == started_q);
+    // guarantee: power-on
     assume (awake_q == 4'd15 || (rd_ni && wr_ni));
-    // guarantee: host-bus:2.5/6, `bus: a, *`
+    // guarantee: host-bus:2.5/6, `bus: a, {gate ICs AA1; dual-ported RAM AA2; default area}`
     assume (rd_ni || wr_ni);
     if (low) begin
-      // guarantee: host-bus:2.2/113, `bus: 113, *`; host-bus:2.2/114, `bus: 114, *`
+      // guarantee: host-bus:2.2/113, host-bus:2.2/114,
+      //   `bus: {113; 114}, {gate ICs AA1; dual-ported RAM AA2; default area}`
       assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
-      // guarantee: host-bus:2.5/7, `bus: b, *`
+      // guarantee: host-bus:2.5/7, `bus: b, {gate ICs AA1; dual-ported RAM AA2; default area}`
       assume (ours_i == ours_q && (!wr_nq || addr_i == addr_q));
-      // guarantee: host-bus:2.6/7, `bus: w2, *`
+      // guarantee: host-bus:2.6/7, `bus: w2, gate ICs AA1`
       assume (wr_nq || age_q >= 5'd15 || addr_i == addr_q);
-      // guarantee: host-bus:2.6/6, `bus: w1, *`; host-bus:2.6/7, `bus: w2, *`
+      // guarantee: host-bus:2.6/6, `bus: w1, gate ICs AA1`; host-bus:2.6/7, `bus: w2, gate ICs AA1`
       assume (wr_nq || age_q >= 5'd15 || age_q <= 5'd4 || wdata_i == wdata_q);
-      // guarantee: host-bus:2.6/8, `bus: s1, *`
+      // guarantee: host-bus:2.6/8, `bus: s1, gate ICs AA1`
       assume (!rise || !ours_q || age_q >= 5'd20);
     end
   end

@@ -1,8 +1,8 @@
 // Rules of the PHASE and SERVO nets, servo-ic:7.2/5 to servo-ic:7.2/7 and servo-ic:7.3/1, for any IC (`n`) and whatever
 // ICs, jumper and pins do: at most one driver, the right one, its level, and conflicts. A step is half a period of
-// clk_pwm; every input may change at any. Nothing is assumed but that a run starts in reset. R9 and R10 are about ICs
-// that take turns, one at a time and high from a change of direction to the next edge of clk_ref, as rules R7 to R9 of
-// `clock_gen` have it.
+// clk_pwm; every input may change at any. Nothing is assumed but that a run has one reset, at its start. R9 and R10 are
+// about ICs that take turns, one at a time and high from a change of direction to the next edge of clk_ref, as rules R7
+// to R9 of `clock_gen` have it.
 // proof: induction 6
 // clocks: several
 // steps: 24
@@ -36,7 +36,7 @@ module clock_select_rules (
   logic       clk_pwm, clk_ref, edge_ref, started_q = 1'b0;
   proof_clocks clocks (.clk_pwm_o(clk_pwm), .clk_ref_o(clk_ref), .edge_pwm_o(), .edge_ref_o(edge_ref), .step_o(step));
   always @($global_clock) started_q <= 1'b1;
-  // guarantee: power-on
+  // guarantee: one reset
   always_comb assume (rst_ni == started_q);
 
   logic       phase, servo, conflict;

@@ -106,21 +106,24 @@ module dpram_rules (
   assign reads   = !rd_ni && sel_i;
   assign ours    = was_low && sel_q && low_q >= 4'd3 + skew && (~rd_ni | ~wr_ni);
   always_comb begin
-    // guarantee: power-on
+    // guarantee: one reset
     assume (rst_ni == started_q);
+    // guarantee: power-on
     assume (awake_q || (rd_ni && wr_ni && !host_sel_i && !host_wr_i));
-    // guarantee: host-bus:2.5/6, `bus: a, *`
+    // guarantee: host-bus:2.5/6, `bus: a, {gate ICs AA1; dual-ported RAM AA2; default area}`
     assume (rd_ni || wr_ni);
-    // guarantee: host-bus:2.2/113, `bus: 113, *`; host-bus:2.2/114, `bus: 114, *`
+    // guarantee: host-bus:2.2/113, host-bus:2.2/114,
+    //   `bus: {113; 114}, {gate ICs AA1; dual-ported RAM AA2; default area}`
     assume ((!rd_nq || rd_ni || rd_fell_q == 3'b000) && (!wr_nq || wr_ni || wr_fell_q == 3'b000));
     if (was_low) begin
-      // guarantee: host-bus:2.2/113, `bus: 113, *`; host-bus:2.2/114, `bus: 114, *`
+      // guarantee: host-bus:2.2/113, host-bus:2.2/114,
+      //   `bus: {113; 114}, {gate ICs AA1; dual-ported RAM AA2; default area}`
       assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
-      // guarantee: host-bus:2.5/7, `bus: b, *`
+      // guarantee: host-bus:2.5/7, `bus: b, {gate ICs AA1; dual-ported RAM AA2; default area}`
       assume (sel_i == sel_q && addr_i == addr_q);
-      // guarantee: host-bus:2.6/6, `bus: w1, *`
+      // guarantee: host-bus:2.6/6, `bus: w1, dual-ported RAM AA2`
       assume (low_q < 4'd3 || wdata_i == wdata_q);
-      // guarantee: host-bus:2.2/118, `bus: 118, *`; host-bus:2.2/102, `bus: 102, *`
+      // guarantee: host-bus:2.2/118, `bus: 118, dual-ported RAM AA2`; host-bus:2.2/102, `bus: 102, dual-ported RAM AA2`
       assume (!rise || !sel_q || (!wait_q && low_q >= 4'd7));
     end
     // guarantee: isa_slave R3, R4

@@ -147,13 +147,13 @@ module host_port_rules (
     assume (started_q || !rst_ni);
     // guarantee: isa_slave R4; bus_sync R3, R4
     assume (!(wr_i && rd_done_i) && !(cpu_we_i && cpu_rd_i));
-    // guarantee: host-bus:3.9/3, `bus: room-in-tx, *`
+    // guarantee: host-bus:3.9/3, `bus: room-in-tx, I/O`
     assume (!(host_wr && data) || may_send_q);
     // guarantee: isa_slave R4
     assume (!rd_i || !(wr_i || rd_done_i));
     // guarantee: isa_slave R7
     assume (!fetch || read_q);
-    // guarantee: host-bus:3.2/12, `breq-rotary: by interrupts, *, lines`
+    // guarantee: host-bus:3.2/12, `breq-rotary: by interrupts, I16=5 I17=10, lines`
     assume (!cpu_send || cpu_may_send_q);
     assume (!cpu_fetch || cpu_may_fetch_q);
   end

@@ -88,7 +88,7 @@ module isa_slave_rules (
     if (two || resetdrv_i || (fall && high_q < 5'd24) || (cmd_q != 4'd0 && (idle ? low_q < 5'd8 : cmd != cmd_q)) ||
         (low_q >= 5'd5 && sd_i != sd_q)) sound_q <= 1'b0;
   end
-  // guarantee: power-on
+  // guarantee: one reset
   always_comb assume (rst_ni == started_q);
 
   // After two commands at once for three edges of clk_pwm and one of clk_ref, until all are high. Of the command that

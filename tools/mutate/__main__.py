@@ -12,7 +12,8 @@
   mutate again [--count 20]        mutants that the results have as killed; each must die again.
                                    Without a name of one module of RTL or firmware
   mutate planted [N...]            bugs in rules (tools/mutate/planted): the test of each finds it; --count N: of one
-                                   program's; --check: that they apply and docs/rules.md counts them; --write: that
+                                   program's; --check: that they apply, docs/rules.md counts them and no result has one
+                                   as not found; --release: and each has a result; --write: those counts
 Exit status: 0 done, 1 number 0 fails, something cannot be built or a check fails, 2 there is no such thing.
 """
 
@@ -59,10 +60,11 @@ def arguments():
                         help="killed mutants that the filter must not prove equal (50)")
     parser.add_argument("--check", action="store_true", help="report, planted: write nothing")
     parser.add_argument("--write", action="store_true", help="planted: its counts into docs/rules.md")
-    parser.add_argument("--release", action="store_true", help="report: open survivors fail")
+    parser.add_argument("--release", action="store_true", help="open survivors, planted bugs without a result fail")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release", help="the built tree")
     parser.add_argument("--jobs", type=positive, default=int(os.environ.get("BRICK_JOBS", os.cpu_count() or 2)))
     options = parser.parse_args()
+    options.build = options.build.resolve()  # commands run in it
     if options.seed is None and options.kind not in ("again", "planted"):
         options.seed = 1
     if options.all and options.count:
@@ -81,7 +83,7 @@ def run(modules, options):
         skip(f"{missing.name} is not installed (./dev setup)")
 
     def judge(module):
-        session = Session(judges.of(module, options.build), options)
+        session = Session(judges.of(module, options.build, "judged"), options)
         if options.changed and session.is_fresh():
             return 0
         session.run()
@@ -102,7 +104,7 @@ def run(modules, options):
 
 def run_planted(options):
     if options.check or options.write:
-        return bugs.tidy(ROOT, options.write)
+        return bugs.tidy(ROOT, options.write, options.release)
     try:
         import planted
     except ImportError as missing:

@@ -47,14 +47,14 @@ def main(modules, options):
     picks = random.Random(options.seed if options.seed is not None else commit())  # another commit, other mutants
     lives, count = [], 0
     for module in modules if options.names else choose(modules, picks):
-        judge, rows = judges.of(module, options.build), killed_rows(module)
+        judge, rows = judges.of(module, options.build, "again"), killed_rows(module)
         chosen = draw([m for m in judge.mutants if m.key in rows], picks, options.count or COUNT)
         judge.write(chosen)
         for mutant in chosen:
             by = rows[mutant.key]["by"]
             verdict = judge.again(mutant, by)
             if verdict is None:
-                print(f"{mutant.file}:{mutant.line}: was killed by {by}, which is no more")
+                print(f"{mutant.file}:{mutant.line}: was killed by {by}, which does not judge it now")
                 continue
             count += 1
             if verdict.status != KILLED:

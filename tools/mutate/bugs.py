@@ -8,8 +8,10 @@ A file has a table `[["CELL"]]` for each bug; CELL is the first cell of its row 
   test   'PROGRAM FILTER': the test that finds it, one that the row names
 
 A row says 'planted 3': it has three. 'planted 3 of 7': seven were planted by hand once, four of them were not kept.
+results/mutation/planted has what came of each: one that was not found fails the check, one without a result a release.
 """
 
+import collections
 import dataclasses
 import fnmatch
 import functools
@@ -17,10 +19,12 @@ import pathlib
 import re
 import tomllib
 
-from mutant import hash_of
+import records
+from common import hash_of
 from runner import Tests
 
 FOLDER = pathlib.Path(__file__).parent / "planted"
+RESULTS = records.FOLDER / "planted"
 RULES = "docs/rules.md"
 FIELDS = {"file", "old", "new", "test"}
 COUNT = re.compile(r"\bplanted (\d+)(?: of (\d+))?\b")
@@ -146,13 +150,26 @@ def problems(root, folder=FOLDER):
     return found
 
 
-def tidy(root, write):
+def outcomes(bugs, folder=RESULTS):
+    """(a line for each that its test did not find when it ran last, those that no result knows)"""
+    rows = {row["key"]: row for path in folder.glob("*.jsonl") for row in records.read(path)[1]}
+    missed = [f"{bug}: {bug.tests.filter} did not find it: {rows[bug.key]['by']}"
+              for bug in bugs if bug.key in rows and not rows[bug.key]["found"]]
+    return missed, [bug for bug in bugs if bug.key not in rows]
+
+
+def tidy(root, write, release, folder=FOLDER, results=RESULTS):
     """The check, and with `write` first the counts into the page. An exit status."""
-    page = root / RULES
+    page, bugs = root / RULES, read(folder)
     if write:
-        page.write_text(counted(page.read_text(), read()))
-    found = problems(root)
+        page.write_text(counted(page.read_text(), bugs))
+    missed, never = outcomes(bugs, results)
+    found = problems(root, folder) + missed
+    if release:
+        found += [f"{bug}: no result says that {bug.tests.filter} finds it" for bug in never]
     for line in found:
         print(line)
-    print(f"planted: {len(read())} bugs, {len(found)} problem(s)")
+    for program, count in sorted(collections.Counter(bug.tests.program for bug in never).items()):
+        print(f"{program}: {count} of its bugs have no result (./dev mutate planted --resume); a release fails")
+    print(f"planted: {len(bugs)} bugs, {len(found)} problem(s)")
     return int(bool(found))

@@ -1,21 +1,24 @@
 """Judges what native tests of the firmware have left alive by the tests of the image: pauses and cycles are there
 alone. The mutant's file is compiled for the target, the image linked with it and run on the CPU model, by those tests
-that execute the mutant's lines."""
+that execute the mutant's lines. Number 0 is made as mutants are, and what goes into the memory must be the image's to
+the byte: what kills is the mutant, not how it was linked."""
 
 import collections
+import contextlib
 import dataclasses
 import functools
 import re
 import shlex
+import shutil
 import threading
 import time
 
 import overlay
 import runner
 import schemata
-from runner import ALIVE, Verdict
+from runner import ALIVE, OUTSIDE, Verdict
 
-IMAGE, LISTING = "bin/turbo.elf", "riscv64-unknown-elf-objdump"
+IMAGE, LISTING, COPY = "bin/turbo.elf", "riscv64-unknown-elf-objdump", "riscv64-unknown-elf-objcopy"
 ZERO_LIMIT = 600  # s
 PLACE = re.compile(r"^(/.*):(\d+)(?: \(discriminator \d+\))?$")
 INSTRUCTION = re.compile(r"^ *([0-9a-f]+):\t")
@@ -27,7 +30,7 @@ class Image:
     def __init__(self, root, tree, out, tests):
         self.root, self.tree, self.out, self.tests = root, tree, out, tests
         self.lock, self.built = threading.Lock(), False
-        self.compiles, self.link = {}, []
+        self.compiles, self.link, self.as_it_is = {}, [], set()  # files that number 0 was made of
         self.lines = collections.defaultdict(set)  # {(file, line): addresses}
         self.executed, self.limits = {}, {}  # {(Tests, test): addresses}; {Tests: s}
 
@@ -91,12 +94,17 @@ class Image:
                 found[tests].append(name)
         return found
 
-    def make(self, mutant, source):
-        """The image with the mutant in it."""
-        folder = self.out / str(mutant.number)
+    def has(self, file):
+        """Whether the image is made of it."""
+        self.read_commands()
+        return str(self.root / file) in self.compiles
+
+    def make(self, name, file, text):
+        """In a folder of that name the image with `text` in the place of `file`."""
+        folder = self.out / name
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "mutant.c").write_bytes(schemata.single(source, mutant))
-        words = list(self.compiles[str(self.root / mutant.file)])
+        (folder / "mutant.c").write_bytes(text)
+        words = list(self.compiles[str(self.root / file)])
         made = words[words.index("-o") + 1]
         words.remove("-Werror")
         for option, file in (("-MF", "mutant.d"), ("-c", "mutant.c"), ("-o", "mutant.o")):
@@ -107,14 +115,44 @@ class Image:
         overlay.run(link, self.tree)
         return folder / "image.elf"
 
+    def content(self, image, folder):
+        overlay.run([COPY, "-O", "binary", str(image), str(folder / "content")], self.tree)
+        return (folder / "content").read_bytes()
+
+    def make_zero(self, file, source):
+        """Number 0, once for each file."""
+        with self.lock:
+            if file in self.as_it_is:
+                return
+            with self.made(f"0_{file.replace('/', '_')}", file, source) as image:
+                if self.content(image, image.parent) != self.content(self.tree / IMAGE, image.parent):
+                    raise runner.BadBuild(f"number 0, the image as it is, is another when {file} is made for a mutant")
+            self.as_it_is.add(file)
+
+    @contextlib.contextmanager
+    def made(self, name, file, text):
+        """As make; its folder goes when it was used."""
+        try:
+            yield self.make(name, file, text)
+        finally:
+            shutil.rmtree(self.out / name, ignore_errors=True)
+
     def judge(self, mutant, source):
         """`source`: of its file."""
-        self.build()
-        if str(self.root / mutant.file) not in self.compiles:
+        if not self.has(mutant.file):
             return Verdict(ALIVE, "", 0.0)
+        self.build()
+        self.make_zero(mutant.file, source)
         begin = time.monotonic()
-        image = self.make(mutant, source)
-        seconds, verdict = time.monotonic() - begin, Verdict(ALIVE, "", 0.0)
+        try:
+            with self.made(str(mutant.number), mutant.file, schemata.single(source, mutant)) as image:
+                seconds, verdict = time.monotonic() - begin, self.by_tests(mutant, source, image)
+        except overlay.NoBuild as failed:
+            return Verdict(OUTSIDE, f"no image: {failed}", time.monotonic() - begin)
+        return dataclasses.replace(verdict, seconds=seconds + verdict.seconds)
+
+    def by_tests(self, mutant, source, image):
+        seconds, verdict = 0.0, Verdict(ALIVE, "", 0.0)
         for tests, names in sorted(self.reached(mutant, source).items(), key=lambda item: self.limits[item[0]]):
             one = functools.partial(self.run, image=image, limit=self.limits[tests])
             verdict = runner.confirmed(one, dataclasses.replace(tests, filter=":".join(names)))
@@ -124,6 +162,9 @@ class Image:
         return dataclasses.replace(verdict, seconds=seconds)
 
     def again(self, mutant, source, tests):
-        """By `tests`; and what they say of the image as it is."""
-        self.read_commands()
-        return [self.run(tests, image, ZERO_LIMIT) for image in (self.tree / IMAGE, self.make(mutant, source))]
+        """What `tests` say of the image as it is, and of the mutant's; None: its file is in no image now."""
+        if not self.has(mutant.file):
+            return None
+        self.make_zero(mutant.file, source)
+        with self.made(str(mutant.number), mutant.file, schemata.single(source, mutant)) as image:
+            return [self.run(tests, one, ZERO_LIMIT) for one in (self.tree / IMAGE, image)]

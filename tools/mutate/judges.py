@@ -6,6 +6,7 @@ from common import ROOT
 import rtl
 
 
-def of(module, tree):
+def of(module, tree, use):
+    """`use`: see workplace.py."""
     judge = rtl.Judge if module.kind == "rtl" else native.Judge
-    return judge(ROOT, tree, module)
+    return judge(ROOT, tree, module, use)

@@ -2,9 +2,10 @@
 
 import collections
 import dataclasses
-import hashlib
 import itertools
 import random
+
+from common import hash_of
 
 SOURCES = (".c", ".cpp", ".h")
 
@@ -77,12 +78,3 @@ def sources_of(root, module):
 def source_hash(root, module):
     """Of what is mutated: it is stale when this differs."""
     return hash_of(*sources_of(root, module))
-
-
-def hash_of(*parts):
-    """Of bytes, texts and files, as hexadecimal digits."""
-    digest = hashlib.sha256()
-    for part in parts:
-        data = part if isinstance(part, bytes) else part.encode() if isinstance(part, str) else part.read_bytes()
-        digest.update(hashlib.sha256(data).digest())
-    return digest.hexdigest()[:16]

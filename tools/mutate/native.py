@@ -4,7 +4,6 @@ the tests of the image."""
 
 import collections
 import dataclasses
-import fcntl
 import functools
 import shlex
 import subprocess
@@ -17,8 +16,9 @@ import image
 import overlay
 import runner
 import schemata
-from common import ROOT
-from mutant import hash_of, mutants_of, sources_of
+import workplace
+from common import ROOT, hash_of
+from mutant import mutants_of, sources_of
 from runner import ALIVE, EQUAL, Tests, Verdict
 
 ZERO_LIMIT, COMPILE_LIMIT = 300, 120  # s
@@ -46,10 +46,10 @@ KINDS = {"firmware": Kind(more={"BRICK_RANDOM_PATHS": "60"}),  # of 2000, which 
 class Judge:
     spare = 100  # mutants to draw on when one is equal; a folder has thousands, each slows all tests
 
-    def __init__(self, root, tree, module):
+    def __init__(self, root, tree, module, use):
         self.root, self.tree, self.module, self.kind = root, tree, module, KINDS[module.kind]
-        self.out = root / "build/mutate" / f"{module.kind}_{module.name}"
-        self.alone = locked(self.out)
+        self.out = workplace.folder_of(tree, use, f"{module.kind}_{module.name}")
+        self.alone = workplace.claimed(self.out)
         self.stages = [("tests", module.opinion, self.kind.compare), ("slip", module.slip, "on")]
         self.programs = {t.program: overlay.Program(tree, t.program) for _, tests, _ in self.stages for t in tests}
         self.commands = self.compilations()
@@ -175,6 +175,8 @@ class Judge:
         tests = Tests(name, test)
         if name in [of_image.program for of_image in self.module.image]:
             verdicts = self.image.again(mutant, self.sources[mutant.file], tests)
+            if verdicts is None:
+                return None
         elif name in self.programs:
             if name not in self.built:
                 self.built[name] = self.program(name)
@@ -244,17 +246,6 @@ class Judge:
         if slip.status != ALIVE:
             return "slip", dataclasses.replace(slip, seconds=seconds + slip.seconds)
         return "", dataclasses.replace(killed, seconds=seconds)
-
-
-def locked(folder):
-    """Held until this process ends: the programs that are built there are one's own."""
-    folder.mkdir(parents=True, exist_ok=True)
-    lock = (folder / "lock").open("w")
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as held:
-        raise runner.BadBuild(f"{folder}: another ./dev mutate is at work there") from held
-    return lock
 
 
 def recorder(program, mutants, out):

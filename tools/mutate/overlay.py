@@ -1,8 +1,8 @@
 """Builds a test program with other source files in the place of some, beside the build tree it is taken from.
 
 The commands are ninja's own. Verilator and compiler run anew for what reads a replaced file, with the new folders first
-in the include path; the objects are linked in front of the libraries, so that their symbols win. Nothing in the build
-tree is written.
+in the include path; the objects are linked in front of the libraries, so that their symbols win. Of the build tree
+its folder mutate alone is written.
 """
 
 import dataclasses

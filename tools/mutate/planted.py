@@ -14,12 +14,11 @@ import overlay
 import records
 import runner
 import schemata
-from common import ROOT
-from mutant import Mutant, hash_of
+import workplace
+from common import ROOT, hash_of
+from mutant import Mutant
 from runner import ALIVE, KILLED
 
-FOLDER = records.FOLDER / "planted"
-OUT = ROOT / "build/mutate/planted"
 BOARDS = {"unit_board", "unit_cosim"}  # programs on whole boards of RTL
 COMPARE = {"rtl": "off", "systemc": "model"}  # by the folder that the bug stands in: what judges it, as for mutants
 FLAGS = ["-w", "-O1", "-D_GLIBCXX_ASSERTIONS"]
@@ -34,9 +33,9 @@ def compare_of(bug):
 class Group:
     """The bugs that one program finds."""
 
-    def __init__(self, name, found, tree):
+    def __init__(self, name, found, tree, use):
         self.name, self.bugs, self.tree = name, found, tree
-        self.out = OUT / name
+        self.out = workplace.folder_of(tree, use, name)
         self.program = overlay.Program(tree, name)
         self.build_seconds = 0.0
 
@@ -60,7 +59,7 @@ class Group:
 
     def write(self):
         """The files with all their bugs in them. {original: what is compiled instead}"""
-        self.alone = native.locked(self.out)
+        self.alone = workplace.claimed(self.out)
         replaced = {}
         for old in (self.out / "source").rglob("*.*"):
             old.unlink()
@@ -130,7 +129,7 @@ def known_of(path, inputs):
 
 def judged(group, options):
     """The rows of its bugs."""
-    path = FOLDER / f"{group.name}.jsonl"
+    path = bugs.RESULTS / f"{group.name}.jsonl"
     inputs = group.inputs()
     known = known_of(path, inputs)
     rows = {key: row for key, row in known.items() if key in {bug.key for bug in bugs.read()}}
@@ -154,11 +153,11 @@ def main(options):
     groups = {}
     for bug in every:
         groups.setdefault(bug.tests.program, []).append(bug)
-    alive = []
+    alive, use = [], "planted_drawn" if options.count else "planted"
     for name, found in sorted(groups.items()):
         begin = time.monotonic()
         try:
-            rows, ran, building = judged(Group(name, list(found), options.build), options)
+            rows, ran, building = judged(Group(name, list(found), options.build, use), options)
         except (runner.BadBuild, overlay.NoBuild, ValueError) as bad:
             lost += [f"{name}: {len(found)} bugs are not judged: {bad}"]
             alive += found

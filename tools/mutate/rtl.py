@@ -10,8 +10,10 @@ import proofs
 import runner
 import schemata
 import verilog
+import workplace
+from common import hash_of
 from equal import Filter
-from mutant import hash_of, mutants_of
+from mutant import mutants_of
 from runner import ALIVE, EQUAL, KILLED, BadBuild, Verdict
 
 FOLDER = pathlib.Path(__file__).parent
@@ -31,11 +33,12 @@ class Stage:
 class Judge:
     spare = None  # mutants to draw on when one is equal; the model holds all
 
-    def __init__(self, root, tree, module):
+    def __init__(self, root, tree, module, use):
         self.root, self.tree, self.module = root, tree, module
         self.source = (root / module.file).read_bytes()
         self.mutants = mutants_of(module.file, self.source, verilog.places(self.source))
-        self.out = root / "build/mutate" / module.name
+        self.out = workplace.folder_of(tree, use, f"{module.kind}_{module.name}")
+        self.alone = workplace.claimed(self.out)
         self.designs = [Filter(root, top, module.file, self.out / f"filter_{top}", FILTER_LIMIT)
                            for top in module.tops]
         self.stages = [Stage("tests", module.opinion, False, "off"), Stage("board", module.board, True, "off"),

@@ -96,6 +96,20 @@ def failures(binary, tests, limit, folder):
     return sorted({name.rstrip(",") for name in re.findall(r"^\[  FAILED  \] ([^\s,]+[./][^\s,]+)", done.stdout, re.M)})
 
 
+def names(binary, tests):
+    """Of the tests of a program that are called so."""
+    said = subprocess.run([str(binary), "--gtest_list_tests", f"--gtest_filter={tests.filter}"], check=False,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True).stdout
+    found, suite = set(), None
+    for line in said.splitlines():
+        name = line.partition("  #")[0].strip()
+        if line.startswith("  "):
+            found.add(f"{suite}{name}")
+        elif name.endswith("."):
+            suite = name
+    return found
+
+
 def no_test(tests):
     return f"no test is called {tests.filter}"
 

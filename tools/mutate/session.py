@@ -8,7 +8,9 @@ import random
 import subprocess
 import time
 
+import prove
 import records
+import runner
 from common import GIT, ROOT
 from mutant import draw, source_hash
 from runner import EQUAL, KILLED
@@ -33,6 +35,7 @@ class Session:
         self.path = records.path_of(judge.module.kind, judge.module.name, options.part)
         self.inputs = judge.inputs()
         self.rows, self.faults, self.begin = {}, [], time.monotonic()
+        self.known_names = {}  # {Tests: names}
         self.seed, self.count = options.seed, None if options.all else options.count or DEFAULT_COUNT
         self.once = self.read_once() if options.renew else {}
         self.known, self.whole = self.read_killed() if options.renew else self.read_known()
@@ -47,10 +50,25 @@ class Session:
         return {records.key(row): row for row in rows}
 
     def read_killed(self):
-        """{number: row} of what other tests have killed of the same sources: numbers are those of the sources."""
+        """{number: row} of what tests that are still there have killed of the same sources, which numbers are of."""
         if not self.once or records.read(self.path)[0]["source"] != source_hash(ROOT, self.judge.module):
             return {}, False
-        return {row["number"]: row for row in self.once.values() if row["status"] == KILLED}, False
+        return {row["number"]: row for row in self.once.values() if row["status"] == KILLED and self.holds(row)}, False
+
+    def holds(self, row):
+        """Whether the test or rule that killed it is there and judges the module. Lock-step is none that does: a test
+        that came since may kill what it killed."""
+        program, _, what = row["by"].partition(": ")
+        module = self.judge.module
+        if row["stage"] == "proof":
+            return program == f"proof {module.proof}" and what in prove.Rules(ROOT, module.proof).english
+        judging = {"tests": module.opinion, "board": module.board, "image": module.image}.get(row["stage"], ())
+        return any(what in self.names(tests) for tests in judging if tests.program == program)
+
+    def names(self, tests):
+        if tests not in self.known_names:
+            self.known_names[tests] = runner.names(self.judge.tree / "bin" / tests.program, tests)
+        return self.known_names[tests]
 
     def read_known(self):
         """{number: row} of results that have the same inputs, and whether they are all that is asked for."""

@@ -230,6 +230,46 @@ def regress_resume():
     check(all(int(name.split("-")[1]) > 30 for name in before), "a usual seed is none that is fresh")
 
 
+# Says when it begins and ends; each line is written in one piece.
+NOTED = ('command = ["sh", "-c", "echo {seed} begins >> {plan}/log; sleep 0.6; echo {seed} ends >> {plan}/log"]\n')
+
+
+def crowds(log):
+    """{run: those that ran beside it}"""
+    running, beside = set(), {}
+    for run, what in map(str.split, log.read_text().splitlines()):
+        if what == "ends":
+            running.remove(run)
+            continue
+        beside[run] = set(running)
+        for other in running:
+            beside[other].add(run)
+        running.add(run)
+    return beside
+
+
+def some_alone(*options):
+    """A folder with the results of a plan whose runs 1, 2 and 5 have nothing beside them. On a cluster two of them fill
+    a task."""
+    folder = Folder("".join(f'[[row]]\nname = "n"\n{NOTED}seeds = {seeds}\nalone = {alone}\n' for seeds, alone in (
+        ("[1, 2]", "true"), ("[3, 4]", "false"), ("5", "true"))))
+    r = folder.regress("--jobs", "3", *options)
+    check(r.returncode == 0, f"{r}")
+    beside = crowds(folder.path / "log")
+    check(len(beside) == 5, f"{beside}")
+    check([run for run in "125" if beside[run]] == [], f"beside those alone: {beside}")
+    return folder, beside
+
+
+def regress_alone():
+    """What is to run alone has nothing beside it, whatever comes before and after; the others run together."""
+    folder, beside = some_alone()
+    check(beside["3"] == {"4"}, f"one at a time: {beside}")
+    folder.write(folder.plan.read_text() + '[[row]]\nname = "late"\ncommand = ["true"]\nalone = "yes"\n')
+    r = folder.regress()
+    check(r.returncode == 2 and "alone: found \"yes\"" in r.stderr, f"{r}")
+
+
 def regress_rank():
     """Covers of the runs that passed, together; the runs by what each adds, until none adds anything."""
     folder = Folder('[[row]]\nname = "own"\n'
@@ -455,6 +495,7 @@ def regress_slurm():
         r = folder.regress("--resume", *on_cluster)
         check(alike(folder.report()) == here, f"after a kill: {r}")
         check(not slurm.said("squeue", "--noheader"), "the array of the call that was killed still works")
+        some_alone("--slurm", "--task-seconds", "1")
         os.environ["PATH"] = ""
         r = folder.regress("--slurm")
         check(r.returncode == 2 and "sbatch: " in r.stderr and "expected a cluster" in r.stderr, f"no cluster: {r}")

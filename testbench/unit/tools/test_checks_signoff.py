@@ -1,8 +1,12 @@
 """Negative controls of the sign-off page and of the plan's covers: each rule is broken in a small tree."""
 
 import json
+import sys
 
-from tree import Tree, run
+from tree import TOOLS, Tree, run
+
+sys.path.insert(0, str(TOOLS))
+import verification_plan
 
 PLAN = """| scenario | stimulus | pass | test | covers |
 |---|---|---|---|---|
@@ -34,7 +38,7 @@ class SignOff(Tree):
         self.write("testbench/formal/breq.sv", "    R1: assert (a);\n    R2: assert (b);\n    I1: assert (c);\n")
         self.write("testbench/unit/a_test.cpp", 'TEST(Breq, FallsOnALine) {\n  BRICK_COVERS("BREQ-1");\n}\n')
         self.count("breq: lines, I17=5", 4)
-        self.plan("`breq: lines, I17=*` >= 4")
+        self.plan("`breq: lines, I17={5}` >= 4")
 
     def count(self, name, count):
         report = {"build": {"commit": "fedcba98765432"},
@@ -51,9 +55,9 @@ class SignOff(Tree):
     def test_a_row_brings_together_what_stands_behind_a_requirement(self):
         self.expect(self.run_tool("signoff.py"), 0, "clean")
         self.assertIn("| BREQ-1 | yes | host-bus:5.3 (planted 7, lost 2, read 1) | 1 tests<br>1 of 1 passed | "
-                      "`breq: lines, I17=*`: 4 of 4 | `breq` 2 | `breq` 90.0 % | tests abcdef0123<br>covers fedcba9876"
-                      "<br>scores 1234567890 |", self.page())
-        self.assertIn("| BREQ-2 | no | none, it is a tool's | none | `breq: lines, I17=*`: 4 of 4 | `breq` 2 | "
+                      "`breq: lines, I17={5}`: 4 of 4 | `breq` 2 | `breq` 90.0 % | tests abcdef0123<br>"
+                      "covers fedcba9876<br>scores 1234567890 |", self.page())
+        self.assertIn("| BREQ-2 | no | none, it is a tool's | none | `breq: lines, I17={5}`: 4 of 4 | `breq` 2 | "
                       "`breq` 90.0 %<br>no figure: `other` |", self.page())
 
     def test_a_stale_page_fails(self):
@@ -101,24 +105,34 @@ class SignOff(Tree):
         self.expect(self.run_tool("signoff.py", "--write"), 1, "BREQ-1 is claimed, but no row of")
 
     def test_a_cover_that_was_not_counted_fails(self):
-        self.expect(self.plan("`breq: pulses` >= 1"), 1, "`breq: pulses`: nothing of that name was counted")
+        self.expect(self.plan("`breq: pulses` >= 1"), 1, "`breq: pulses`: 0; expected at least 1")
 
     def test_a_cover_below_its_count_fails(self):
         self.count("breq: lines, I17=6", 3)
-        self.expect(self.plan("`breq: lines, I17=*` >= 4"), 1, "breq: lines, I17=6: 3; expected at least 4")
+        self.expect(self.plan("`breq: lines, I17={6}` >= 4"), 1, "breq: lines, I17=6`: 3; expected at least 4")
+
+    def test_each_of_a_list_is_asked_for(self):
+        self.expect(self.plan("`breq: lines, I17={4; 5}` >= 4"), 1, "breq: lines, I17=4`: 0; expected at least 4")
+        self.expect(self.plan("`breq: {lines; pulses}, I17={5..6}` >= 1"), 1, "3 problem(s)")
+        self.expect(self.plan("`breq: lines, I17=*` >= 4"), 1, "breq: lines, I17=*`: 0; expected at least 4")
+
+    def test_lists_in_braces_are_a_cross(self):
+        self.assertEqual(verification_plan.each("a"), ["a"])
+        self.assertEqual(verification_plan.each("t{1..3; 5off}, {I/O; b = 2, c}!"),
+                         [f"t{n}, {what}!" for n in ("1", "2", "3", "5off") for what in ("I/O", "b = 2, c")])
 
     def trace(self, covers):
         self.plan(covers)
         return self.run_tool("traceability.py", "--write")
 
     def test_a_row_of_the_plan_without_covers_and_reason_fails(self):
-        for covers in ("listed", "`breq: lines, *` >= 1,000", "proved, asserted", "none: the pins are not there"):
+        for covers in ("listed", "`breq: lines, {I/O}` >= 1,000", "proved, asserted", "none: the pins are not there"):
             self.expect(self.trace(covers), 0, "clean")
         self.expect(self.trace(""), 1, "'a line (BREQ-1 to BREQ-2)': no cover and no reason")
         self.expect(self.trace("-"), 1, "no cover and no reason")
         self.expect(self.trace("none:"), 1, "'none' is no cover")
         self.expect(self.trace("often"), 1, "'often' is no cover")
-        self.expect(self.trace("`breq: lines, *` >= 0"), 1, "asks for nothing")
+        self.expect(self.trace("`breq: lines` >= 0"), 1, "asks for nothing")
 
     def test_a_table_of_the_plan_without_the_column_fails(self):
         self.write("docs/verification-plan.md", "| scenario | stimulus | pass | test |\n|---|---|---|---|\n"

@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
 """The mutation tool on small texts: which places its parser finds, what it writes, how it judges what programs say."""
 
+import dataclasses
+import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import unittest
 from typing import ClassVar
 from unittest import mock
@@ -20,10 +24,13 @@ except ImportError as missing:
     print(f"skipped: {missing.name} is not installed (./dev setup)")
     sys.exit(77)
 
+import common  # noqa: E402
 import cpp_source  # noqa: E402
 import equal  # noqa: E402
+import judges  # noqa: E402
 import mutant  # noqa: E402
 import plan  # noqa: E402
+import planted  # noqa: E402
 import proofs  # noqa: E402
 import records  # noqa: E402
 import report  # noqa: E402
@@ -31,6 +38,7 @@ import runner  # noqa: E402
 import schemata  # noqa: E402
 import session  # noqa: E402
 import verilog  # noqa: E402
+import workplace  # noqa: E402
 
 import rtl  # noqa: E402
 
@@ -291,32 +299,79 @@ class Fresh(unittest.TestCase):
             self.assertFalse(self.fresh({**head, **other}), other)
         self.assertTrue(self.fresh({**head, "count": None}, all=True))
 
-    def test_renewed_what_was_killed_stays_while_the_sources_do(self):
+    RENEWED = (  # status, stage, what killed it, whether that is there now and judges
+        ("killed", "tests", "unit_a: Of.Work", True), ("killed", "tests", "unit_a: All/Of.Each/1", True),
+        ("killed", "board", "unit_a: Of.Work", True), ("killed", "proof", "proof pic_8259: R1", True),
+        ("killed", "tests", "unit_a: Of.Gone", False), ("killed", "tests", "unit_b: Of.Work", False),
+        ("killed", "image", "unit_a: Of.Work", False), ("killed", "slip", "unit_a: Of.Work", False),
+        ("killed", "proof", "proof pic_8259: R999", False), ("killed", "proof", "proof dpram: R1", False),
+        ("killed", "tests", "unit_a: /m.c:3:4: runtime error: index 5", False),
+        ("alive", "", "", False), ("equal", "filter", "proved equal", False))
+
+    def test_renewed_what_tests_kill_that_are_there_stays_while_the_sources_do(self):
         """Of other inputs; seed and count are those of the results."""
-        rows = [{**Reports.ROW, "number": n, "line": n, "text": str(n), "status": status}
-                for n, status in ((1, "killed"), (2, "alive"), (3, "equal"))]
+        rows = [{**Reports.ROW, "number": n, "line": n, "text": str(n), "status": status, "stage": stage, "by": by}
+                for n, (status, stage, by, _) in enumerate(self.RENEWED)]
         judge = mock.Mock(**{"inputs.return_value": "y"})
-        judge.module.kind, judge.module.name, judge.module.file = "rtl", "m", "rtl/host/pic_8259.sv"
+        judge.module = dataclasses.replace(plan.choose("rtl", ["pic_8259"])[0], name="m", proof="pic_8259", image=(),
+                                           opinion=(runner.Tests("unit_a", "*"),), board=(runner.Tests("unit_a", "*"),),
+                                           slip=(runner.Tests("unit_a", "*"),))
         options = mock.Mock(part=None, all=False, count=None, seed=1, renew=True)
         head = {"inputs": "x", "source": "s", "seed": 5, "count": 3}
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
+            judge.tree = pathlib.Path(folder)
+            (judge.tree / "bin").mkdir()
+            listed = "Of.\\n  Work\\nAll/Of.\\n  Each/0  # GetParam() = 0\\n  Each/1  # GetParam() = 1\\n"
+            (judge.tree / "bin/unit_a").write_text(f"#!/bin/sh\nprintf '{listed}'\n")
+            (judge.tree / "bin/unit_a").chmod(0o755)
             records.write(records.path_of("rtl", "m", None), head, rows)
-            for source, kept in (("s", {1}), ("other", set())):
+            there = {n for n, (*_, there) in enumerate(self.RENEWED) if there}
+            for source, kept in (("s", there), ("other", set())):
                 with mock.patch.object(session, "source_hash", lambda *_, now=source: now):
                     one = session.Session(judge, options)
-                self.assertEqual((set(one.known), one.seed, one.count, len(one.once)), (kept, 5, 3, 3))
+                self.assertEqual((set(one.known), one.seed, one.count, len(one.once)), (kept, 5, 3, len(rows)))
 
     def test_what_judges_is_an_input(self):
         module = plan.choose("rtl", ["ssi_edges"])[0]
         with tempfile.TemporaryDirectory() as folder:
             (pathlib.Path(folder) / "bin").mkdir()
-            judge = rtl.Judge(TOOLS.parent, pathlib.Path(folder), module)
+            judge = rtl.Judge(TOOLS.parent, pathlib.Path(folder), module, "judged")
             for tests in {t.program for stage in judge.stages for t in stage.tests}:
                 (judge.tree / "bin" / tests).write_text("")
             with mock.patch.object(rtl, "hash_of", lambda *parts: parts):
                 parts = judge.inputs()
         for name in ("mutate/runner.py", "mutate/verilog.py", "mutate/schemata.py", "prove.py"):
             self.assertIn(TOOLS / name, parts)
+
+
+class Workplaces(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.tree = pathlib.Path(folder.name)
+
+    def test_the_second_waits_for_the_first(self):
+        folder = workplace.folder_of(self.tree, "again", "rtl_m")
+        first, begin = workplace.claimed(folder), time.monotonic()
+        threading.Timer(1, first.close).start()
+        workplace.claimed(folder, 60).close()
+        self.assertGreaterEqual(time.monotonic() - begin, 1)
+
+    def test_it_does_not_wait_without_an_end(self):
+        said = f"{self.tree}: process {os.getpid()}, another .* for 0.1 s; wait for its end, or end it"
+        with workplace.claimed(self.tree), self.assertRaisesRegex(runner.BadBuild, said):
+            workplace.claimed(self.tree, 0.1)
+
+    def test_a_session_is_not_in_the_way_of_a_test(self):
+        """Each below its build tree; what both could build is in two folders."""
+        module, other = plan.choose("rtl", ["ssi_edges"])[0], self.tree / "other"
+        with mock.patch.object(workplace, "claimed"), mock.patch.object(planted.overlay, "Program"):
+            found = [judges.of(module, tree, use).out for tree in (self.tree, other) for use in ("judged", "again")]
+            found += [planted.Group("unit_ssi", [], tree, use).out for tree in (self.tree, other)
+                      for use in ("planted", "planted_drawn")]
+        self.assertEqual([self.tree in path.parents for path in found], [True] * 8)
+        self.assertEqual([other in path.parents for path in found], [False, False, True, True] * 2)
+        self.assertEqual(len(set(found)), 8)
 
 
 class Reports(unittest.TestCase):
@@ -362,7 +417,7 @@ class Reports(unittest.TestCase):
         row = {**self.ROW, "status": "killed", "stage": "tests"}
         modules = {"rtl": dict.fromkeys(("now", "before"), plan.choose("rtl", ["ssi_edges"])[0])}
         results = {("rtl", name): ([{**self.HEAD, "source": source}], [row]) for name, source in (
-            ("now", mutant.hash_of(TOOLS.parent / self.HEAD["file"])), ("before", "0123456789abcdef"))}
+            ("now", common.hash_of(TOOLS.parent / self.HEAD["file"])), ("before", "0123456789abcdef"))}
         text = report.page(results, {}, modules)
         self.assertRegex(text, r"`now` .* 3 \| 1 \| c \|")
         self.assertRegex(text, r"`before` .* 3 \| 1 \| c, stale \|")

@@ -238,6 +238,77 @@ class Images(unittest.TestCase):
             self.assertEqual((stage, verdict.status, verdict.seconds), (wanted, by_image, 4.0))
 
 
+class ImagesMade(unittest.TestCase):
+    """Of two files, by the compiler of this machine; the test of the image runs it."""
+
+    SOURCE = b"int work(int n) {\n  return n + 1;\n}\n"
+    MAIN = "int work(int n);\nint main(void) { return work(2) == 3 ? 0 : 1; }\n"
+    PROGRAM = """#!/bin/sh
+[ -z "$BRICK_EXECUTED" ] || echo Of.Work 16 > "$BRICK_EXECUTED"
+echo "[ RUN      ] Of.Work"
+if "$BRICK_IMAGE"; then echo "[==========] 1 test from 1 test suite ran."; else echo "[  FAILED  ] Of.Work"; exit 1; fi
+"""
+    TESTS = runner.Tests("unit_image", "*")
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        (self.root / "bin").mkdir()
+        (self.root / "a.c").write_bytes(self.SOURCE)
+        (self.root / "main.c").write_text(self.MAIN)
+        (self.root / "bin/unit_image").write_text(self.PROGRAM)
+        (self.root / "bin/unit_image").chmod(0o755)
+        self.judge = image.Image(self.root, self.root, self.root / "out", (self.TESTS,))
+        self.judge.compiles = {str(self.root / file): ["cc", "-O1", "-Werror", "-MD", "-MF", f"{file}.d", "-c",
+                                                       str(self.root / file), "-o", f"{file}.o"]
+                               for file in ("a.c", "main.c")}
+        self.judge.link = ["cc", "a.c.o", "main.c.o", "-Wl,--build-id=none", "-o", image.IMAGE]
+        for command in (*self.judge.compiles.values(), self.judge.link):
+            subprocess.run(command, cwd=self.root, check=True)
+        self.judge.lines["none", 1] = {16}
+        self.judge.lines[str(self.root / "a.c"), 2] = {16}
+        for what in (mock.patch.object(image, "COPY", "objcopy"), mock.patch.object(self.judge, "read_lines")):
+            what.start()
+            self.addCleanup(what.stop)
+
+    def mutant(self, new, file="a.c"):
+        at = self.SOURCE.index(b"n + 1")
+        return mutant.Mutant(7, file, 2, "", mutant.Place(at, at + 5, "operator", "n + 1", new))
+
+    def verdict(self, new):
+        verdict = self.judge.judge(self.mutant(new), self.SOURCE)
+        return verdict.status, verdict.by.split("\n")[0]
+
+    def test_a_mutant_is_run_in_its_image_which_goes_then(self):
+        self.assertEqual(self.verdict("n + 2"), ("killed", "unit_image: Of.Work"))
+        self.assertEqual(self.verdict("1 + n"), ("alive", ""))
+        self.assertEqual([v.status for v in self.judge.again(self.mutant("n - 1"), self.SOURCE, self.TESTS)],
+                         ["alive", "killed"])
+        self.assertEqual([path.name for path in (self.root / "out").iterdir() if path.is_dir()], [])
+
+    def test_one_that_cannot_be_built_is_outside(self):
+        status, by = self.verdict("n + undeclared")
+        self.assertEqual(status, "outside")
+        self.assertIn("no image: cc ", by)
+        self.assertFalse((self.root / "out/7").exists())
+
+    def test_number_0_is_linked_as_mutants_are(self):
+        """Linked in this way the image of any mutant would fail."""
+        self.judge.link.insert(1, "-Wl,--defsym=work=main")
+        for judge in (lambda: self.verdict("n + 2"),
+                      lambda: self.judge.again(self.mutant("n + 2"), self.SOURCE, self.TESTS)):
+            with self.assertRaisesRegex(runner.BadBuild, "number 0, the image as it is, is another when a.c is made"):
+                judge()
+
+    def test_of_a_file_that_has_gone_from_the_image_nothing_is_said(self):
+        gone = self.mutant("n + 2", "gone.c")
+        self.assertIsNone(self.judge.again(gone, self.SOURCE, self.TESTS))
+        judge = mock.Mock(image=self.judge, sources={"gone.c": self.SOURCE}, programs={})
+        judge.module.image = (self.TESTS,)
+        self.assertIsNone(native.Judge.again(judge, gone, "unit_image: Of.Work"))
+
+
 class Judges(unittest.TestCase):
     def test_quick_tests_come_first_and_those_only_that_come_to_it(self):
         judge = mock.Mock(reached={

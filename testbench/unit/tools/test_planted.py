@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Bugs planted in rules: what of a source is chosen by number, and that entries and counts that are wrong are found."""
 
+import contextlib
+import io
 import pathlib
 import sys
 import tempfile
@@ -17,6 +19,7 @@ except ImportError as missing:
 
 import bugs  # noqa: E402
 import enclosing  # noqa: E402
+import records  # noqa: E402
 import schemata  # noqa: E402
 from mutant import Mutant  # noqa: E402
 
@@ -132,6 +135,34 @@ class Entries(unittest.TestCase):
     def test_a_row_that_was_only_read(self):
         self.entry(BUG.replace("servo-ic:1", "servo-ic:2").replace("Suite.FindsIt", "Suite.Other"))
         self.assertIn("| servo-ic:2 | `Suite.Other` | planted 1 |", self.counts())
+
+    def tidy(self, release=False, **row):
+        """(status, what it says) with a result that has `row`; without any where there is none."""
+        bug = bugs.read(self.root / "planted")[0]
+        results = self.root / "results"
+        if row:
+            records.write(results / "unit_a.jsonl", {"inputs": "x"}, [{"number": 1, "key": bug.key, **row}])
+        bugs.text_of.cache_clear()
+        self.counts()
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            status = bugs.tidy(self.root, False, release, self.root / "planted", results)
+        return status, said.getvalue()
+
+    def test_one_that_its_test_did_not_find_fails(self):
+        status, said = self.tidy(found=False, by="its test passes")
+        self.assertEqual(status, 1)
+        self.assertIn("one.toml 1: servo-ic:1: a.sv: a & b => a | b: Suite.FindsIt did not find it: its test passes",
+                      said)
+        self.assertEqual(self.tidy(found=True, by="unit_a: Suite.FindsIt"), (0, "planted: 1 bugs, 0 problem(s)\n"))
+
+    def test_one_that_was_never_run_fails_a_release(self):
+        for row in ({}, {"found": True, "by": "", "key": "of an older text"}):
+            self.assertEqual(self.tidy(**row), (0, "unit_a: 1 of its bugs have no result (./dev mutate planted "
+                                                   "--resume); a release fails\n"
+                                                   "planted: 1 bugs, 0 problem(s)\n"))
+            status, said = self.tidy(release=True, **row)
+            self.assertEqual(status, 1)
+            self.assertIn("no result says that Suite.FindsIt finds it", said)
 
     def test_what_no_longer_applies_fails(self):
         for text in ("assign r = a ^ b;\n", "assign r = a & b | a & b;\n"):

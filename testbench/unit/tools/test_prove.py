@@ -1,9 +1,14 @@
 """Negative controls of tools/prove.py: a counter of four bits that stops at nine, and rules that must not pass."""
 
 import shutil
+import sys
 import unittest
+from unittest import mock
 
-from tree import Tree, run
+from tree import TOOLS, Tree, run
+
+sys.path.insert(0, str(TOOLS))
+import prove
 
 COUNTER = """
 module counter (input wire logic clk_i, input wire logic rst_ni, input wire logic up_i, output logic [3:0] count_o);
@@ -33,6 +38,31 @@ module counter_rules (input wire logic clk_i, input wire logic rst_ni, input wir
   end
 endmodule : counter_rules
 """
+
+
+class Refuted(unittest.TestCase):
+    """What pdr says in frame 2, and what the search for the waveform makes of it."""
+
+    def said(self, clocks, search):
+        rules = mock.Mock(proof="pdr", clocks=clocks, path="m.sv", english={"R1": "It holds."})
+        solvers = mock.Mock()
+        rules.name, solvers.abc.return_value = "m", ("", 2)
+        solvers.trace.return_value = "m.vcd"
+        solvers.search.side_effect = search
+        with self.assertRaises(prove.Failed) as failed:
+            prove.prove(rules, solvers)
+        return str(failed.exception), solvers.search.call_args.args
+
+    def test_no_deeper_than_pdr_was(self):
+        for clocks, steps in (("one", 3), ("several", 18)):
+            said, asked = self.said(clocks, [1])
+            self.assertEqual((said, asked), ("m.sv: R1 refuted at step 1, see m.vcd: It holds.", ("m", "R1", steps)))
+
+    def test_a_waveform_that_is_not_found_in_time_leaves_it_refuted(self):
+        for search, why in (([prove.Failed("yosys-abc: no answer within 9 s")], "yosys-abc: no answer within 9 s"),
+                            ([None], "bmc3 finds it nowhere")):
+            self.assertEqual(self.said("several", search)[0],
+                             f"m.sv: R1 refuted within 18 steps, without a waveform ({why}): It holds.")
 
 
 @unittest.skipUnless(shutil.which("yosys") and shutil.which("z3"), "yosys or z3 is not installed")
