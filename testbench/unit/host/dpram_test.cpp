@@ -250,6 +250,56 @@ TEST_F(DpramTest, ThePinsAreDrivenFromTheDataToTheEndOfTheStrobe) {
   cpu_end();
 }
 
+// host-bus:2.6/5. Two bits count the falls: of four reads of others behind one of ours the last has its count.
+TEST_F(DpramTest, ReadsOfOtherDevicesDriveNothing) {
+  cpu_read(6);
+  for (int read = 0; read < 8; ++read) {
+    cpu_start_read(6);
+    both.in.cpu_sel = false;
+    for (int tick = 0; tick < kAccess + 3; ++tick) {
+      EXPECT_FALSE(both.get("cpu_drive")) << read << ", tick " << tick;
+      both.tick();
+    }
+    cpu_end();
+    both.ticks(2);
+  }
+}
+
+// systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
+TEST_F(DpramTest, SleepsWhileNothingMoves) {
+  const auto rests = [&] {
+    both.ref(4);
+    return both.asleep();
+  };
+  EXPECT_TRUE(rests());
+  for (const bool ours : {true, false})
+    for (const bool read : {true, false}) {
+      read ? cpu_start_read(8) : cpu_start_write(8, 1);
+      both.in.cpu_sel = ours;
+      EXPECT_TRUE(rests()) << ours << read;
+      cpu_end();
+      EXPECT_TRUE(rests()) << ours << read;
+    }
+  for (const bool read : {true, false}) {
+    host_start(8, read);
+    EXPECT_TRUE(rests()) << "the host has the word";
+    read ? cpu_start_write(8, 1) : cpu_start_read(8);
+    EXPECT_TRUE(rests());
+    EXPECT_TRUE(cpu_busy());
+    cpu_end();
+    both.in.mem_sel = false;
+    EXPECT_TRUE(rests());
+    read ? cpu_start_write(8, 1) : cpu_start_read(8);
+    both.ref(2);
+    host_start(8, read);
+    EXPECT_TRUE(rests());
+    EXPECT_TRUE(host_busy());
+    cpu_end();
+    both.in.mem_sel = false;
+    EXPECT_TRUE(rests());
+  }
+}
+
 TEST_F(DpramTest, StrobesOfOtherDevicesDoNotWait) {
   cpu_start_read(6);
   both.in.cpu_sel = false;
