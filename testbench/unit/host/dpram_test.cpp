@@ -34,6 +34,16 @@ TEST_F(DpramTest, CpuDataComesWithTheThirdEdgeAndTheEndOfTheWaitOneLater) {
   EXPECT_EQ(both.get("cpu_rdata"), 0x1234u) << "held";
 }
 
+// docs/dpram.md: held until the next read.
+TEST_F(DpramTest, WordOfAReadStaysThroughWrites) {
+  host_write(6, 0x1234);
+  EXPECT_EQ(cpu_read(6), 0x1234u);
+  cpu_write(6, 0x4321);
+  cpu_write(7, 0x5678);
+  EXPECT_EQ(both.get("cpu_rdata"), 0x1234u);
+  EXPECT_EQ(cpu_read(6), 0x4321u);
+}
+
 TEST_F(DpramTest, CpuWriteWaitsForTheThirdEdgeAndIsMadeTwoLater) {
   cpu_start_write(6, 0x4321);
   for (int tick = 0; tick < 3; ++tick) {
@@ -323,6 +333,25 @@ TEST_F(DpramTest, UnselectedStrobesDoNothing) {
   cpu_end();
   both.ticks(2);
   EXPECT_EQ(host_read(4), 0x0F0Fu);
+}
+
+TEST_F(DpramTest, NothingIsAskedForAfterAReset) {
+  for (const bool before : {false, true}) {
+    if (before) cpu_start_write(6, 1);  // lost with the reset
+    both.ticks(2);
+    cpu_end();
+    both.in.rd_falls = both.in.wr_falls = 0;  // the counts are reset with it
+    both.reset();
+    both.in.cpu_sel = true;
+    for (int tick = 0; tick < 10; ++tick) {
+      EXPECT_FALSE(cpu_wait()) << tick;
+      EXPECT_FALSE(cpu_busy()) << tick;
+      EXPECT_FALSE(both.get("cpu_drive")) << tick;
+      both.tick();
+    }
+    cpu_end();
+    EXPECT_EQ(host_read(6), 0u);
+  }
 }
 
 TEST_F(DpramTest, ResetKeepsTheContent) {

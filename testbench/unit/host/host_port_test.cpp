@@ -90,6 +90,16 @@ TEST_F(HostPortTest, AWriteTouchesNoOtherRegister) {
   all_hold({true, kIsr, 0, 0});
   write({false, kHsr, 0, 0}, 0xFFFFFB);
   all_hold({false, kHsr, 0, 0});
+
+  host_write(kData5, 0x65);  // the upper bytes of the next word
+  host_write(kData6, 0x43);
+  for (std::size_t n = 0; n < 8; ++n) write(words[n], words[n].value);
+  write({true, kIsr, 0, 0}, 0xFF);
+  write({false, kHsr, 0, 0}, 0xFFFFFB);
+  host_write(kData7, 0x21);
+  EXPECT_EQ(cpu_read(kHorx), 0x123456u);
+  both_.ref();
+  EXPECT_EQ(cpu_read(kHorx), 0x654321u);
 }
 
 // systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.

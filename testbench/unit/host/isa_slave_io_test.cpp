@@ -220,6 +220,28 @@ TEST_F(IsaSlaveTest, ReadDataStaysWhileTheRegisterChanges) {
   ticks(9);
 }
 
+// The host port is told of a read at one edge of clk_ref, which takes the byte, and of no other cycle.
+TEST_F(IsaSlaveTest, ReadOfTheHostPortLooksOnce) {
+  for (unsigned offset = 0; offset < 16; ++offset)
+    for (const bool write : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << (write ? "write +" : "read +") << offset);
+      unsigned looks = 0, byte = 0;
+      set_address(0x210 + offset);
+      ticks(11);
+      for (int n = 0; n < 80; ++n) {
+        (write ? both.in.isa_iow_n : both.in.isa_ior_n) = n >= 63;
+        port = static_cast<std::uint8_t>(port + 37);
+        if (is_ref_edge(both.now() + 1) && both.get("hp_rd") != 0) {
+          ++looks;
+          byte = (port + offset) & 0xFF;
+        }
+        tick();
+        if (n == 62 && looks != 0) { EXPECT_EQ(bus_data(), 0xFF00 | byte); }
+      }
+      EXPECT_EQ(looks, !write && offset < 8 ? 1u : 0u);
+    }
+}
+
 // What a read of the interrupt controller gives and what it does belong to one clk_ref edge (8259: acknowledge, poll).
 TEST_F(IsaSlaveTest, ReadOfTheInterruptControllerTakesDataAndEffectAtOneEdge) {
   for (int phase = 0; phase < 3; ++phase) {
