@@ -47,10 +47,11 @@ class Session:
         return {records.key(row): row for row in rows}
 
     def read_killed(self):
-        """{key: row} of what other tests have killed of the same sources."""
+        """{key: row} of what other tests have killed of the same sources; lock-step's alone are survivors."""
         if not self.once or records.read(self.path)[0]["source"] != source_hash(ROOT, self.judge.module):
             return {}, False
-        return {key: row for key, row in self.once.items() if row["status"] == KILLED}, False
+        return {key: row for key, row in self.once.items()
+                if row["status"] == KILLED and row["stage"] != "slip"}, False
 
     def read_known(self):
         """{key: row} of results that have the same inputs, and whether they are all that is asked for."""

@@ -293,8 +293,8 @@ class Fresh(unittest.TestCase):
 
     def test_renewed_what_was_killed_stays_while_the_sources_do(self):
         """Of other inputs; seed and count are those of the results. By what it is: another finder, other numbers."""
-        rows = [{**Reports.ROW, "number": n, "line": n, "text": str(n), "status": status}
-                for n, status in ((1, "killed"), (2, "alive"), (3, "equal"))]
+        rows = [{**Reports.ROW, "number": n, "line": n, "text": str(n), "status": status, "stage": stage}
+                for n, status, stage in ((1, "killed", "tests"), (2, "alive", ""), (3, "killed", "slip"))]
         judge = mock.Mock(**{"inputs.return_value": "y"})
         judge.module.kind, judge.module.name, judge.module.file = "rtl", "m", "rtl/host/pic_8259.sv"
         options = mock.Mock(part=None, all=False, count=None, seed=1, renew=True)
