@@ -15,7 +15,7 @@ namespace brick {
 
 class Dpram final : public sc_core::sc_module, public ModelBlock {
  public:
-  explicit Dpram(const sc_core::sc_module_name& name) : sc_module(name) {}
+  explicit Dpram(const sc_core::sc_module_name& name) : sc_module(name) { reset(0); }
 
   static constexpr unsigned kWords = DpramMemory::kWords;
 
@@ -81,16 +81,16 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   DpramMemory memory_;
   // CPU side: pins as sampled, then the access under way
   Strobe rd_, wr_;
-  bool sel_ = false;
-  std::uint16_t pins_ = 0;
-  bool drive_ = false;         // the word of a read stands
-  std::uint8_t drive_rd_ = 0;  // which one it was
-  bool cpu_busy_ = false, own_ = false, own_wr_ = false, sampled_ = false, proven_ = false;
-  std::uint16_t cell_ = 0, wdata_ = 0, cpu_rdata_ = 0;
+  bool sel_;
+  std::uint16_t pins_;
+  bool drive_;             // the word of a read stands
+  std::uint8_t drive_rd_;  // which one it was
+  bool cpu_busy_, own_, own_wr_, sampled_, proven_;
+  std::uint16_t cell_, wdata_, cpu_rdata_;
   // host side
-  bool host_own_ = false, mem_busy_ = false;
-  std::uint16_t mem_rdata_ = 0;
-  Tick now_ = 0;
+  bool host_own_, mem_busy_;
+  std::uint16_t mem_rdata_;
+  Tick now_;
 };
 
 }  // namespace brick

@@ -44,9 +44,9 @@ class HostPort final : public sc_core::sc_module, public RefClockedBlock {
 
   std::uint8_t icr_, cvr_, ivr_, hcr_, hbar_;
   std::uint16_t hpcr_;
-  std::uint32_t tx_ = 0, horx_ = 0, hotx_ = 0, rx_ = 0;
-  bool txde_ = true, hrdf_ = false, htde_ = true, rxdf_ = false;
-  bool saw_ = false;  // the host's read under way found a word in RX
+  std::uint32_t tx_, horx_, hotx_, rx_;
+  bool txde_, hrdf_, htde_, rxdf_;
+  bool saw_;  // the host's read under way found a word in RX
 };
 
 }  // namespace brick

@@ -15,7 +15,7 @@ namespace brick {
 
 class IsaSlave final : public sc_core::sc_module, public ModelBlock {
  public:
-  explicit IsaSlave(const sc_core::sc_module_name& name) : sc_module(name) {}
+  explicit IsaSlave(const sc_core::sc_module_name& name) : sc_module(name) { reset(0); }
 
   using Inputs = IsaSlaveInputs;
   Inputs in;
@@ -111,22 +111,22 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   Cycle next_cycle(bool io_load, bool mem_load) const;
   void begin();
 
-  Tick now_ = 0;
+  Tick now_;
   // clk_pwm
-  std::uint8_t cmd1_ = kAll, cmd2_ = kAll, la1_ = 0, la2_ = 0, la_hits_ = 0;
-  std::uint16_t sd1_ = 0, sd2_ = 0, sd_low_ = 0;  // sd_low_: the last with a write command low
-  std::uint16_t wdata_ = 0;                       // the same for who works on clk_ref
+  std::uint8_t cmd1_, cmd2_, la1_, la2_, la_hits_;
+  std::uint16_t sd1_, sd2_, sd_low_;  // sd_low_: the last with a write command low
+  std::uint16_t wdata_;               // the same for who works on clk_ref
   // clk_ref: samples
-  std::uint32_t sa_ = 0;
-  bool aen_ = false, sbhe_n_ = true;
-  std::uint8_t resetdrv_ = 0;
-  IsaStraps straps_ = IsaStraps::none();
+  std::uint32_t sa_;
+  bool aen_, sbhe_n_;
+  std::uint8_t resetdrv_;
+  IsaStraps straps_;
   // the cycle
-  Cycle cycle_ = Cycle::kHold;
-  bool byte8_ = false;
-  std::uint8_t kind_ = 0, target_ = 0, lanes_ = 0, be_ = 0, page_ = 0, io_addr_ = 0;
-  std::uint16_t mem_addr_ = 0, sd_ = 0xFFFF;
-  std::uint8_t oe_shown_ = 0;  // after the last edge
+  Cycle cycle_;
+  bool byte8_;
+  std::uint8_t kind_, target_, lanes_, be_, page_, io_addr_;
+  std::uint16_t mem_addr_, sd_;
+  std::uint8_t oe_shown_;  // after the last edge
   bool every_end_ = true;
 };
 

@@ -13,7 +13,7 @@ namespace brick {
 
 class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
  public:
-  explicit Pic8259(const sc_core::sc_module_name& name) : sc_module(name) {}
+  explicit Pic8259(const sc_core::sc_module_name& name) : sc_module(name) { reset_registers(); }
 
   using Inputs = Pic8259Inputs;
   Inputs in;
@@ -54,13 +54,13 @@ class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
   void write_ocw2();
   void write_second();
 
-  std::uint8_t line1_ = 0, line2_ = 0;
-  std::uint8_t armed_ = 0;  // the line has been low since its last acknowledge
-  std::uint8_t isr_ = 0, imr_ = regs::pic_8259::kOcw1.reset, vector_ = 0;
-  unsigned lowest_ = kDefaultLevel;
-  Step step_ = Step::kReady;
-  bool icw3_ = false, icw4_ = false;  // will be written
-  bool level_ = false, aeoi_ = false, turn_ = false, special_ = false, read_isr_ = false, poll_ = false;
+  std::uint8_t line1_, line2_;
+  std::uint8_t armed_;  // the line has been low since its last acknowledge
+  std::uint8_t isr_, imr_, vector_;
+  unsigned lowest_;
+  Step step_;
+  bool icw3_, icw4_;  // will be written
+  bool level_, aeoi_, turn_, special_, read_isr_, poll_;
 };
 
 }  // namespace brick

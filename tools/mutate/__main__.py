@@ -56,8 +56,8 @@ def arguments():
     parser.add_argument("--part", type=part_of, metavar="K/N", help="every Nth of the drawn mutants")
     parser.add_argument("--resume", action="store_true", help="keep what stands in the results for the same inputs")
     parser.add_argument("--renew", action="store_true", help="judge the mutants of the results, whatever their inputs")
-    parser.add_argument("--control", type=int, default=50, metavar="N",
-                        help="killed mutants that the filter must not prove equal (50)")
+    parser.add_argument("--control", type=int, metavar="N",
+                        help="killed mutants that the filter must not prove equal (50; of C and C++ 5)")
     parser.add_argument("--check", action="store_true", help="report, planted: write nothing")
     parser.add_argument("--write", action="store_true", help="planted: its counts into docs/rules.md")
     parser.add_argument("--release", action="store_true", help="open survivors, planted bugs without a result fail")

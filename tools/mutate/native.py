@@ -5,10 +5,11 @@ the tests of the image."""
 import collections
 import dataclasses
 import functools
+import json
+import pathlib
+import resource
 import shlex
-import subprocess
 import threading
-import time
 
 import c_source
 import cpp_source
@@ -18,7 +19,7 @@ import runner
 import schemata
 import workplace
 from common import ROOT, hash_of
-from mutant import mutants_of, sources_of
+from mutant import Place, mutants_of, sources_of
 from runner import ALIVE, EQUAL, Tests, Verdict
 
 ZERO_LIMIT, COMPILE_LIMIT = 300, 120  # s
@@ -45,6 +46,7 @@ KINDS = {"firmware": Kind(more={"BRICK_RANDOM_PATHS": "60"}),  # of 2000, which 
 
 class Judge:
     spare = 100  # mutants to draw on when one is equal; a folder has thousands, each slows all tests
+    controls = 5  # of the filter, which compares bytes: each is compiled alone
 
     def __init__(self, root, tree, module, use):
         self.root, self.tree, self.module, self.kind = root, tree, module, KINDS[module.kind]
@@ -54,9 +56,7 @@ class Judge:
         self.programs = {t.program: overlay.Program(tree, t.program) for _, tests, _ in self.stages for t in tests}
         self.commands = self.compilations()
         self.sources = {file: (root / file).read_bytes() for file in self.commands}
-        self.mutants = []
-        for file in self.commands:
-            self.mutants += self.mutants_in(file, len(self.mutants) + 1)
+        self.mutants = self.find()
         self.image = image.Image(root, tree, self.out / "image", module.image) if module.image else None
         self.lock, self.build_seconds = threading.Lock(), 0.0
         self.replaced, self.built, self.objects = {}, {}, {}
@@ -80,11 +80,34 @@ class Judge:
             chosen[path[len(str(self.root)) + 1:]] = own or list(commands.values())[:1]
         return chosen
 
-    def mutants_in(self, file, first):
+    def find(self):
+        """The mutants of all files. What the parser found is kept while nothing that it reads changes."""
+        kept, found, mutants = self.out / "places.json", {}, []
+        known = json.loads(kept.read_text()) if kept.exists() else {}
+        for file in self.commands:
+            read = self.hash_of_read(file)
+            places = known[file][1] if known.get(file, [""])[0] == read else self.places_in(file)
+            found[file] = [read, places]
+            mutants += mutants_of(file, self.sources[file], [Place(*place) for place in places], len(mutants) + 1)
+        kept.write_text(json.dumps(found))
+        return mutants
+
+    def hash_of_read(self, file):
+        """Of the tree's files that the compiler reads for `file`, its options and the finders."""
+        command = self.commands[file][0]
+        target = command[command.index("-o") + 1]
+        read = {path for program in self.programs.values() for path in program.read.get(target, ())}
+        own = sorted(path for path in read if path.startswith(str(self.root)))
+        return hash_of(*map(pathlib.Path, own), repr(parser_options(command)),
+                       *(TOOLS / f"{part}.py" for part in ("c_source", "cpp_source", "schemata", "mutant")))
+
+    def places_in(self, file):
         options = parser_options(self.commands[file][0])
         if file.endswith(".c"):
-            return mutants_of(file, self.sources[file], c_source.Finder(self.root / file, options).places, first)
-        return cpp_source.mutants(self.root / file, file, options, first)
+            places = c_source.Finder(self.root / file, options).places
+        else:
+            places = [m.place for m in cpp_source.mutants(self.root / file, file, options, 1)]
+        return [dataclasses.astuple(place) for place in places]
 
     def inputs(self):
         """A hash of all that decides: the folder's files, the programs as built, these tools."""
@@ -113,12 +136,12 @@ class Judge:
         with self.lock:
             if self.built:
                 return
-            begin, built = time.monotonic(), {name: self.program(name) for name in self.programs}
+            begin, built = children_seconds(), {name: self.program(name) for name in self.programs}
             for stage, programs, compare in self.stages:
                 for tests in programs:
                     self.pass_zero(stage, tests, compare, built[tests.program])
             self.built = built
-            self.build_seconds += time.monotonic() - begin
+            self.build_seconds += children_seconds() - begin
 
     def program(self, name):
         folder, program = self.out / "tests", self.programs[name]
@@ -191,20 +214,24 @@ class Judge:
 
     def by_filter(self, mutant):
         """Equal: the object code is, of all that reads the file."""
-        begin, source = time.monotonic(), self.sources[mutant.file]
+        source, seconds, same = self.sources[mutant.file], 0.0, True
         mutated = schemata.single(source, mutant)
-        same = all(self.original(mutant.file, n) == self.object_code(mutant.file, n, str(mutant.number), mutated)
-                   for n in range(len(self.commands[mutant.file])))
-        return Verdict(EQUAL if same else ALIVE, "same object code" if same else "", time.monotonic() - begin)
+        for n in range(len(self.commands[mutant.file])):
+            code, used = self.object_code(mutant.file, n, str(mutant.number), mutated)
+            seconds += used
+            if code != self.original(mutant.file, n):
+                same = False
+                break
+        return Verdict(EQUAL if same else ALIVE, "same object code" if same else "", seconds)
 
     def original(self, file, reader):
         if (file, reader) not in self.objects:
-            self.objects[file, reader] = self.object_code(file, reader, f"0_{file.replace('/', '_')}",
-                                                          self.sources[file])
+            self.objects[file, reader], _ = self.object_code(file, reader, f"0_{file.replace('/', '_')}",
+                                                             self.sources[file])
         return self.objects[file, reader]
 
     def object_code(self, file, reader, folder, source):
-        """Of a file that reads `file`, with `source` in its place."""
+        """Of a file that reads `file`, with `source` in its place, and the seconds that the compiler took."""
         folder, command = self.out / "alone" / folder, self.commands[file][reader]
         (folder / file).parent.mkdir(parents=True, exist_ok=True)
         (folder / file).write_bytes(source)
@@ -218,14 +245,10 @@ class Judge:
         words = [f"-I{(self.tree / w[2:]).resolve()}" if w.startswith("-I") else w for w in words]
         compiler = next(i for i, w in enumerate(words) if w.endswith(("++", "cc", "gcc")) and not w.endswith("ccache"))
         words[compiler + 1:compiler + 1] = ["-I."]
-        try:
-            done = subprocess.run([*words, *OPTIMIZED], cwd=folder, capture_output=True, text=True,
-                                  timeout=COMPILE_LIMIT, check=False)
-        except subprocess.TimeoutExpired as late:
-            raise overlay.NoBuild(f"{shlex.join(words)}: no end within {COMPILE_LIMIT} s") from late
-        if done.returncode != 0:
-            raise overlay.NoBuild(f"{shlex.join(words)}\n{done.stderr[-2000:]}")
-        return (folder / "alone.o").read_bytes()
+        status, said, seconds = runner.ended([*words, *OPTIMIZED], folder, COMPILE_LIMIT)
+        if status != 0:
+            raise overlay.NoBuild(f"{shlex.join(words)}\nstatus {status}\n{said[-2000:]}")
+        return (folder / "alone.o").read_bytes(), seconds
 
     def judge(self, mutant, first=""):
         """(stage, verdict). What lock-step alone kills has stage 'slip' and counts as alive for the score. `first`:
@@ -233,8 +256,14 @@ class Judge:
         killed = self.by_tests("tests", self.kind.compare, mutant, first)
         if killed.status != ALIVE:
             return "tests", killed
+        seconds = killed.seconds
+        if self.module.slip:  # before the filter: what it kills need not be compiled alone
+            slip = self.by_tests("slip", "on", mutant)
+            seconds += slip.seconds
+            if slip.status != ALIVE:
+                return "slip", dataclasses.replace(slip, seconds=seconds)
         equal = self.by_filter(mutant)
-        seconds = killed.seconds + equal.seconds
+        seconds += equal.seconds
         if equal.status == EQUAL:
             return "filter", dataclasses.replace(equal, seconds=seconds)
         if self.image:
@@ -242,10 +271,13 @@ class Judge:
             seconds += by_image.seconds
             if by_image.status != ALIVE:
                 return "image", dataclasses.replace(by_image, seconds=seconds)
-        slip = self.by_tests("slip", "on", mutant) if self.module.slip else killed
-        if slip.status != ALIVE:
-            return "slip", dataclasses.replace(slip, seconds=seconds + slip.seconds)
         return "", dataclasses.replace(killed, seconds=seconds)
+
+
+def children_seconds():
+    """Of the processor, of all programs that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def recorder(program, mutants, out):

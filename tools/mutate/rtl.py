@@ -32,6 +32,7 @@ class Stage:
 
 class Judge:
     spare = None  # mutants to draw on when one is equal; the model holds all
+    controls = 50  # of the filter
 
     def __init__(self, root, tree, module, use):
         self.root, self.tree, self.module = root, tree, module

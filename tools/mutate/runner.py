@@ -70,21 +70,25 @@ def run(binary, tests, number, limit, compare, folder, **more):
     environment.pop("GTEST_TOTAL_SHARDS", None)
     command = ["prlimit", f"--cpu={math.ceil(limit)}", str(binary), f"--gtest_filter={tests.filter}",
                "--gtest_fail_fast"]
+    status, text, seconds = ended(command, folder, ASLEEP + CROWDED * limit, environment)
+    begun = tuple(re.findall(r"\[ RUN      \] (\S+)", text.partition("[  FAILED  ]")[0]))  # it skips the rest
+    if status in (-signal.SIGXCPU, -signal.SIGKILL):
+        return Verdict(OUTSIDE, f"{tests.program}: no end within {limit:.0f} s", seconds, begun)
+    return dataclasses.replace(judge(status, text, tests, seconds), begun=begun)
+
+
+def ended(command, folder, limit, environment=None):
+    """(status, what it said, seconds of the processor) of a program that is killed after `limit` seconds."""
     with tempfile.TemporaryFile() as said:
         program = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=said,
                                    stderr=subprocess.STDOUT)
-        watch = threading.Timer(ASLEEP + CROWDED * limit, program.kill)
+        watch = threading.Timer(limit, program.kill)
         watch.start()
         _, status, used = os.wait4(program.pid, 0)
         watch.cancel()
         program.returncode = os.waitstatus_to_exitcode(status)
         said.seek(0)
-        text = said.read().decode(errors="replace")
-    seconds = used.ru_utime + used.ru_stime
-    begun = tuple(re.findall(r"\[ RUN      \] (\S+)", text.partition("[  FAILED  ]")[0]))  # it skips the rest
-    if program.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
-        return Verdict(OUTSIDE, f"{tests.program}: no end within {limit:.0f} s", seconds, begun)
-    return dataclasses.replace(judge(program.returncode, text, tests, seconds), begun=begun)
+        return program.returncode, said.read().decode(errors="replace"), used.ru_utime + used.ru_stime
 
 
 def failures(binary, tests, limit, folder):

@@ -50,10 +50,10 @@ class Session:
         return {records.key(row): row for row in rows}
 
     def read_killed(self):
-        """{number: row} of what tests that are still there have killed of the same sources, which numbers are of."""
+        """{key: row} of what tests that are still there have killed of the same sources."""
         if not self.once or records.read(self.path)[0]["source"] != source_hash(ROOT, self.judge.module):
             return {}, False
-        return {row["number"]: row for row in self.once.values() if row["status"] == KILLED and self.holds(row)}, False
+        return {key: row for key, row in self.once.items() if row["status"] == KILLED and self.holds(row)}, False
 
     def holds(self, row):
         """Whether the test or rule that killed it is there and judges the module. Lock-step is none that does: a test
@@ -71,14 +71,14 @@ class Session:
         return self.known_names[tests]
 
     def read_known(self):
-        """{number: row} of results that have the same inputs, and whether they are all that is asked for."""
+        """{key: row} of results that have the same inputs, and whether they are all that is asked for."""
         if not self.path.exists():
             return {}, False
         head, rows = records.read(self.path)
         if head["inputs"] != self.inputs:
             return {}, False
         whole = head.get("done", False) and (head["count"], head["seed"]) == (self.count, self.seed)
-        return {row["number"]: row for row in rows}, whole
+        return {records.key(row): row for row in rows}, whole
 
     def is_fresh(self):
         return self.whole
@@ -96,7 +96,8 @@ class Session:
             k, n = options.part
             first, rest = first[k - 1::n], rest[k - 1::n]
         if options.resume:
-            self.rows = {m.number: self.known[m.number] for m in first + rest if m.number in self.known}
+            self.rows = {m.number: {**self.known[m.key], "number": m.number, "line": m.line}
+                         for m in first + rest if m.key in self.known}
         known = set(self.rows)
         self.judge.write([m for m in first + rest if m.number not in known])
         order, taken = iter(first + rest), []
@@ -119,10 +120,11 @@ class Session:
         return sum(self.rows[m.number]["status"] != EQUAL for m in taken)
 
     def control(self, pool, taken):
-        """The filter must not prove equal what a test has killed."""
+        """The filter must not prove equal what a test has killed: so many as are asked for, or as its judge needs."""
         killed = [m for m in taken
                   if self.rows[m.number]["status"] == KILLED and self.rows[m.number]["stage"] in ("tests", "board")]
-        chosen = random.Random(self.seed).sample(killed, min(self.options.control, len(killed)))
+        count = self.judge.controls if self.options.control is None else self.options.control
+        chosen = random.Random(self.seed).sample(killed, min(count, len(killed)))
         for mutant, verdict in zip(chosen, pool.map(self.judge.by_filter, chosen), strict=True):
             if verdict.status == EQUAL:
                 self.faults.append(mutant.number)

@@ -58,6 +58,33 @@ TEST_F(DpramCollisionTest, CpuWaitsForAHostWriteAndThenReadsTheNewValue) {
   EXPECT_FALSE(cpu_wait());
 }
 
+// docs/dpram.md: a strobe is another device's a clock after its fall was seen, for selects may come so late.
+TEST_F(DpramCollisionTest, ASelectBehindItsStrobeIsInTime) {
+  for (const bool read : {true, false})
+    for (int late = 0; late <= 2; ++late) {
+      SCOPED_TRACE(::testing::Message() << (read ? "read" : "write") << ", select " << late << " ticks late");
+      host_write(8, 0x0101);
+      host_start(8, !read);
+      both.ref(2);
+      read ? cpu_start_read(8) : cpu_start_write(8, 0x7777);
+      both.in.cpu_sel = late == 0;
+      both.ticks(late);
+      both.in.cpu_sel = true;
+      both.ticks(kAccess + 1 - late);
+      EXPECT_TRUE(cpu_wait());
+      EXPECT_TRUE(cpu_busy());
+      read ? host_end_write(0x2222) : host_end_read();
+      both.tick();
+      EXPECT_FALSE(cpu_busy());
+      if (read) { EXPECT_EQ(both.get("cpu_rdata"), 0x2222u); }
+      both.ticks(2);
+      EXPECT_FALSE(cpu_wait());
+      cpu_end();
+      both.ticks(kRest);
+      EXPECT_EQ(host_read(8), read ? 0x2222u : 0x7777u);
+    }
+}
+
 TEST_F(DpramCollisionTest, CpuWriteWaitsForAHostRead) {
   host_start(8, true);
   both.ref();

@@ -34,6 +34,16 @@ TEST_F(DpramTest, CpuDataComesWithTheThirdEdgeAndTheEndOfTheWaitOneLater) {
   EXPECT_EQ(both.get("cpu_rdata"), 0x1234u) << "held";
 }
 
+// docs/dpram.md: held until the next read.
+TEST_F(DpramTest, WordOfAReadStaysThroughWrites) {
+  host_write(6, 0x1234);
+  EXPECT_EQ(cpu_read(6), 0x1234u);
+  cpu_write(6, 0x4321);
+  cpu_write(7, 0x5678);
+  EXPECT_EQ(both.get("cpu_rdata"), 0x1234u);
+  EXPECT_EQ(cpu_read(6), 0x4321u);
+}
+
 TEST_F(DpramTest, CpuWriteWaitsForTheThirdEdgeAndIsMadeTwoLater) {
   cpu_start_write(6, 0x4321);
   for (int tick = 0; tick < 3; ++tick) {
@@ -250,6 +260,56 @@ TEST_F(DpramTest, ThePinsAreDrivenFromTheDataToTheEndOfTheStrobe) {
   cpu_end();
 }
 
+// host-bus:2.6/5. Two bits count the falls: of four reads of others behind one of ours the last has its count.
+TEST_F(DpramTest, ReadsOfOtherDevicesDriveNothing) {
+  cpu_read(6);
+  for (int read = 0; read < 8; ++read) {
+    cpu_start_read(6);
+    both.in.cpu_sel = false;
+    for (int tick = 0; tick < kAccess + 3; ++tick) {
+      EXPECT_FALSE(both.get("cpu_drive")) << read << ", tick " << tick;
+      both.tick();
+    }
+    cpu_end();
+    both.ticks(2);
+  }
+}
+
+// systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
+TEST_F(DpramTest, SleepsWhileNothingMoves) {
+  const auto rests = [&] {
+    both.ref(4);
+    return both.asleep();
+  };
+  EXPECT_TRUE(rests());
+  for (const bool ours : {true, false})
+    for (const bool read : {true, false}) {
+      read ? cpu_start_read(8) : cpu_start_write(8, 1);
+      both.in.cpu_sel = ours;
+      EXPECT_TRUE(rests()) << ours << read;
+      cpu_end();
+      EXPECT_TRUE(rests()) << ours << read;
+    }
+  for (const bool read : {true, false}) {
+    host_start(8, read);
+    EXPECT_TRUE(rests()) << "the host has the word";
+    read ? cpu_start_write(8, 1) : cpu_start_read(8);
+    EXPECT_TRUE(rests());
+    EXPECT_TRUE(cpu_busy());
+    cpu_end();
+    both.in.mem_sel = false;
+    EXPECT_TRUE(rests());
+    read ? cpu_start_write(8, 1) : cpu_start_read(8);
+    both.ref(2);
+    host_start(8, read);
+    EXPECT_TRUE(rests());
+    EXPECT_TRUE(host_busy());
+    cpu_end();
+    both.in.mem_sel = false;
+    EXPECT_TRUE(rests());
+  }
+}
+
 TEST_F(DpramTest, StrobesOfOtherDevicesDoNotWait) {
   cpu_start_read(6);
   both.in.cpu_sel = false;
@@ -273,6 +333,25 @@ TEST_F(DpramTest, UnselectedStrobesDoNothing) {
   cpu_end();
   both.ticks(2);
   EXPECT_EQ(host_read(4), 0x0F0Fu);
+}
+
+TEST_F(DpramTest, NothingIsAskedForAfterAReset) {
+  for (const bool before : {false, true}) {
+    if (before) cpu_start_write(6, 1);  // lost with the reset
+    both.ticks(2);
+    cpu_end();
+    both.in.rd_falls = both.in.wr_falls = 0;  // the counts are reset with it
+    both.reset();
+    both.in.cpu_sel = true;
+    for (int tick = 0; tick < 10; ++tick) {
+      EXPECT_FALSE(cpu_wait()) << tick;
+      EXPECT_FALSE(cpu_busy()) << tick;
+      EXPECT_FALSE(both.get("cpu_drive")) << tick;
+      both.tick();
+    }
+    cpu_end();
+    EXPECT_EQ(host_read(6), 0u);
+  }
 }
 
 TEST_F(DpramTest, ResetKeepsTheContent) {

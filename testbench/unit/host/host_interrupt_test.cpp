@@ -82,6 +82,16 @@ TEST_F(HostInterruptTest, AServiceWhileLowDelaysByItsOwnClockOnly) {
   EXPECT_EQ(clocks_until(true), 1);
 }
 
+// systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
+TEST_F(HostInterruptTest, SleepsWhileNothingMoves) {
+  EXPECT_TRUE(both_.asleep());
+  for (const bool request : {true, false}) {
+    both_.in.request = request;
+    both_.ref(2 * kLowClocks);
+    EXPECT_TRUE(both_.asleep()) << request;
+  }
+}
+
 TEST_F(HostInterruptTest, RandomRequestsAndServicesAgree) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     std::mt19937 random(random_seed(seed));

@@ -44,6 +44,17 @@ TEST_F(HostPortTest, UpperBytesStayFromWordToWord) {
   }
 }
 
+TEST_F(HostPortTest, UpperBytesMayComeInEitherOrder) {
+  for (const bool hlend : {false, true}) {
+    host_write(kIcr, hlend ? kHlend : 0);
+    host_write(kData6, 0x34);
+    host_write(kData5, 0x12);
+    host_write(kData7, 0x56);
+    both_.ref();
+    EXPECT_EQ(cpu_read(kHorx), hlend ? 0x563412u : 0x123456u);
+  }
+}
+
 TEST_F(HostPortTest, WordFromTheCpuArrivesOneClockLater) {
   cpu_write(kHotx, 0xABCDEF);
   EXPECT_EQ(hsr() & kHtde, 0u);

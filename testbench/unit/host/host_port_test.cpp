@@ -53,6 +53,73 @@ TEST_F(HostPortTest, CpuRegistersHoldTheirBits) {
     if (addr < kHcr || addr > kHotx) { EXPECT_EQ(cpu_peek(addr), 0u) << "nothing at X:$FFFFC0 + " << int{addr}; }
 }
 
+// Each register is written while all others hold values of their own, and what cannot be written too.
+TEST_F(HostPortTest, AWriteTouchesNoOtherRegister) {
+  cpu_write(kHotx, 0xABCDEF);
+  host_send(0x123456);
+  both_.ref(2);
+  struct Word {
+    bool host;
+    unsigned addr, value, other;  // 0, 0: not written
+  };
+  std::vector<Word> words = {{true, kIcr, 0x18, 0x0C},  {true, kCvr, 0x25, 0x4A},       {true, kIvr, 0x77, 0x81},
+                             {false, kHcr, 0x18, 0x0E}, {false, kHpcr, 0x5A2C, 0xA513}, {false, kHbar, 0x45, 0x9B},
+                             {true, kUnused, 0, 0},     {false, kHorx, 0x123456, 0},    {true, kData5, 0xAB, 0xAB},
+                             {true, kData6, 0xCD, 0xCD}};
+  const auto write = [&](const Word& word, unsigned value) {
+    const auto addr = static_cast<std::uint8_t>(word.addr);
+    word.host ? host_write(addr, value) : cpu_write(addr, value);
+  };
+  const auto all_hold = [&](const Word& written) {
+    for (const Word& word : words) {
+      const auto addr = static_cast<std::uint8_t>(word.addr);
+      EXPECT_EQ(word.host ? host_peek(addr) : cpu_peek(addr), word.value)
+          << (word.host ? "+" : "X:$FFFFC0 + ") << word.addr << " after a write of "
+          << (written.host ? "+" : "X:$FFFFC0 + ") << written.addr;
+    }
+  };
+  for (std::size_t n = 0; n < 6; ++n) write(words[n], words[n].value);
+  for (int round = 0; round < 2; ++round)
+    for (std::size_t n = 0; n < words.size(); ++n) {
+      Word& word = words[n];
+      if (n < 6) std::swap(word.value, word.other);
+      write(word, n < 6 ? word.value : 0xFF);
+      all_hold(word);
+    }
+  write({true, kIsr, 0, 0}, 0xFF);
+  all_hold({true, kIsr, 0, 0});
+  write({false, kHsr, 0, 0}, 0xFFFFFB);
+  all_hold({false, kHsr, 0, 0});
+
+  host_write(kData5, 0x65);  // the upper bytes of the next word
+  host_write(kData6, 0x43);
+  for (std::size_t n = 0; n < 8; ++n) write(words[n], words[n].value);
+  write({true, kIsr, 0, 0}, 0xFF);
+  write({false, kHsr, 0, 0}, 0xFFFFFB);
+  host_write(kData7, 0x21);
+  EXPECT_EQ(cpu_read(kHorx), 0x123456u);
+  both_.ref();
+  EXPECT_EQ(cpu_read(kHorx), 0x654321u);
+}
+
+// systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
+TEST_F(HostPortTest, SleepsWhileNothingMoves) {
+  EXPECT_TRUE(both_.asleep());
+  for (unsigned word = 1; word <= 2; ++word) {
+    host_send(word);
+    cpu_write(kHotx, word);
+    both_.ref(2);
+    EXPECT_TRUE(both_.asleep()) << word;
+  }
+  both_.in.hp_sel = both_.in.hp_rd = true;
+  both_.ref(2);
+  EXPECT_TRUE(both_.asleep()) << "a read of the host";
+  both_.in.hp_sel = both_.in.hp_rd = false;
+  both_.in.hp_reset = true;
+  both_.ref(2);
+  EXPECT_TRUE(both_.asleep()) << "RESETDRV";
+}
+
 TEST_F(HostPortTest, WithoutSelectNothingHappens) {
   both_.in.hp_wr = both_.in.dsp_we = true;
   both_.in.hp_wdata = 0xFF;

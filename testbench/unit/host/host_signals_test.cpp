@@ -85,6 +85,22 @@ TEST_F(HostSignalsTest, ATripEmptiesTheControlOutputsUntilTheReset) {
   EXPECT_LOCKSTEP(both_);
 }
 
+// systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
+TEST_F(HostSignalsTest, SleepsWhileNothingMoves) {
+  EXPECT_TRUE(both_.asleep());
+  write(9);
+  write_ctrl(3);
+  EXPECT_TRUE(both_.asleep());
+  both_.in.wr = both_.in.ctrl_wr = true;  // a strobe that changes nothing
+  both_.in.wdata = 3;
+  both_.ref();
+  EXPECT_TRUE(both_.asleep());
+  both_.in.trip = true;
+  both_.ref();
+  EXPECT_TRUE(both_.asleep());
+  EXPECT_LOCKSTEP(both_);
+}
+
 TEST_F(HostSignalsTest, ComparisonSeesSwappedBits) {
   both_.mutate = [](HostSignals::Inputs& in) {
     in.wdata = static_cast<std::uint8_t>((in.wdata & 9) | (in.wdata & 2) << 1 | (in.wdata & 4) >> 1);

@@ -97,6 +97,25 @@ TEST_F(InterruptControllerTest, ResetdrvClearsOneRegisterAlone) {
   }
 }
 
+// systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
+TEST_F(InterruptControllerTest, SleepsWhileNothingMoves) {
+  const auto rests = [&] {
+    both_.ref(4);
+    return both_.asleep();
+  };
+  EXPECT_TRUE(rests());
+  write(kMask, 0x3C);
+  write(kEdgeLevel, 0x0F);
+  for (const std::uint8_t lines : {0xFF, 0x00, 0xAA}) {
+    line(lines);
+    EXPECT_TRUE(rests()) << int{lines};
+  }
+  write(kStatus, 0);
+  EXPECT_TRUE(rests());
+  both_.in.reset = true;
+  EXPECT_TRUE(rests()) << "RESETDRV";
+}
+
 TEST_F(InterruptControllerTest, MaskAndModeHoldEveryBit) {
   for (unsigned bit = 0; bit < 8; ++bit) {
     const auto one = static_cast<std::uint8_t>(1u << bit), other = static_cast<std::uint8_t>(~one);

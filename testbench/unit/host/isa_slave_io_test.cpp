@@ -100,6 +100,109 @@ TEST_F(IsaSlaveTest, WriteTakesTheDataLastSeenWhileTheCommandWasLow) {
   }
 }
 
+// Nothing moves between two commands but the data, and they not with the end of the first.
+TEST_F(IsaSlaveTest, WritesOfOneRegisterTakeTheirOwnDataEach) {
+  const unsigned values[] = {0x41, 0x42, 0x42, 0x43};
+  set_address(0x217);
+  for (const unsigned value : values) {
+    both.in.isa_sd = static_cast<std::uint16_t>(value);
+    ticks(20);
+    both.in.isa_iow_n = false;
+    ticks(63);
+    both.in.isa_iow_n = true;
+    ticks(20);
+  }
+  ASSERT_EQ(strobes.size(), std::size(values));
+  for (unsigned n = 0; n < std::size(values); ++n) EXPECT_EQ(strobes[n], (Strobe{"hp_wr", 7, values[n]}));
+}
+
+// docs/isa_slave.md: they pass to a register on clk_ref at the end of the cycle, so nothing behind this bus hangs on
+// clk_pwm.
+TEST_F(IsaSlaveTest, WriteDataMoveAtTheEndOfTheirCycleOnly) {
+  io_write(0x217, 0x11);
+  for (const bool write : {false, true}) {
+    set_address(0x217);
+    both.in.isa_sd = 0x22;
+    ticks(11);
+    (write ? both.in.isa_iow_n : both.in.isa_ior_n) = false;
+    for (int n = 0; n < 63; ++n) {
+      EXPECT_EQ(both.get("hp_wdata"), 0x11u) << n;
+      tick();
+    }
+    both.in.isa_iow_n = both.in.isa_ior_n = true;
+    ticks(12);
+    EXPECT_EQ(both.get("hp_wdata"), write ? 0x22u : 0x11u);
+  }
+}
+
+// Each pin moves alone, long after all others have come to rest.
+TEST_F(IsaSlaveTest, EachPinIsSeenThoughNothingElseMoves) {
+  const auto write = [&](bool memory) {
+    strobes.clear();
+    ticks(20);
+    (memory ? both.in.isa_memw_n : both.in.isa_iow_n) = false;
+    ticks(63);
+    both.in.isa_memw_n = both.in.isa_iow_n = true;
+    ticks(20);
+    return strobes;
+  };
+  set_address(0xD0217);
+  both.in.isa_sd = 0x1234;
+  both.in.isa_sbhe_n = false;
+  both.in.isa_sa = 0x216;
+  ticks(20);
+  both.in.isa_sa = 0x217;
+  EXPECT_EQ(write(false), (std::vector<Strobe>{{"hp_wr", 7, 0x34}})) << "SA";
+  both.in.isa_aen = true;
+  EXPECT_TRUE(write(false).empty()) << "AEN";
+  both.in.isa_aen = false;
+  EXPECT_EQ(write(false).size(), 1u);
+  both.in.isa_sa = 0xD0216;
+  EXPECT_EQ(write(true), (std::vector<Strobe>{{"mem_wr", 0x216 / 2, 3u << 16 | 0x1234}}));
+  both.in.isa_sbhe_n = true;
+  EXPECT_EQ(write(true), (std::vector<Strobe>{{"mem_wr", 0x216 / 2, 1u << 16 | 0x1234}})) << "SBHE#";
+  both.in.isa_sd = 0x4321;
+  EXPECT_EQ(write(true), (std::vector<Strobe>{{"mem_wr", 0x216 / 2, 1u << 16 | 0x4321}})) << "SD";
+  both.in.isa_la = 0;
+  EXPECT_TRUE(write(true).empty()) << "LA";
+  both.in.isa_la = 0xD0000 >> 17;
+  EXPECT_EQ(write(true).size(), 1u);
+  both.in.window_flat = false;
+  both.in.window = 0xD4000 >> 14;
+  EXPECT_TRUE(write(true).empty()) << "a window of 16 KiB";
+  both.in.isa_resetdrv = true;
+  ticks(20);
+  EXPECT_EQ(both.get("host_reset"), 1u);
+}
+
+// systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
+TEST_F(IsaSlaveTest, SleepsWhileNothingMoves) {
+  const auto rests = [&] {
+    ticks(63);
+    return both.asleep();
+  };
+  EXPECT_TRUE(rests());
+  const struct {
+    unsigned address;
+    bool Inputs::*command;
+  } cycles[] = {{0x217, &Inputs::isa_ior_n},   {0x217, &Inputs::isa_iow_n},    {0x21A, &Inputs::isa_ior_n},
+                {0x220, &Inputs::isa_ior_n},   {0xD0000, &Inputs::isa_memr_n}, {0xD0000, &Inputs::isa_memw_n},
+                {0xE0000, &Inputs::isa_memr_n}};
+  for (const auto& cycle : cycles) {
+    set_address(cycle.address);
+    EXPECT_TRUE(rests()) << std::hex << cycle.address;
+    both.in.*cycle.command = false;
+    EXPECT_TRUE(rests()) << std::hex << cycle.address << ", the command is low";
+    both.in.*cycle.command = true;
+    EXPECT_TRUE(rests()) << std::hex << cycle.address << ", it is high";
+  }
+  both.in.isa_ior_n = both.in.isa_iow_n = false;
+  EXPECT_TRUE(rests()) << "two commands";
+  both.in.isa_ior_n = both.in.isa_iow_n = true;
+  both.in.isa_resetdrv = true;
+  EXPECT_TRUE(rests()) << "RESETDRV";
+}
+
 TEST_F(IsaSlaveTest, ReadDataStaysWhileTheRegisterChanges) {
   both.in.isa_sa = 0x212;
   ticks(11);
@@ -115,6 +218,28 @@ TEST_F(IsaSlaveTest, ReadDataStaysWhileTheRegisterChanges) {
   }
   both.in.isa_ior_n = true;
   ticks(9);
+}
+
+// The host port is told of a read at one edge of clk_ref, which takes the byte, and of no other cycle.
+TEST_F(IsaSlaveTest, ReadOfTheHostPortLooksOnce) {
+  for (unsigned offset = 0; offset < 16; ++offset)
+    for (const bool write : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << (write ? "write +" : "read +") << offset);
+      unsigned looks = 0, byte = 0;
+      set_address(0x210 + offset);
+      ticks(11);
+      for (int n = 0; n < 80; ++n) {
+        (write ? both.in.isa_iow_n : both.in.isa_ior_n) = n >= 63;
+        port = static_cast<std::uint8_t>(port + 37);
+        if (is_ref_edge(both.now() + 1) && both.get("hp_rd") != 0) {
+          ++looks;
+          byte = (port + offset) & 0xFF;
+        }
+        tick();
+        if (n == 62 && looks != 0) { EXPECT_EQ(bus_data(), 0xFF00 | byte); }
+      }
+      EXPECT_EQ(looks, !write && offset < 8 ? 1u : 0u);
+    }
 }
 
 // What a read of the interrupt controller gives and what it does belong to one clk_ref edge (8259: acknowledge, poll).

@@ -13,6 +13,14 @@ TEST_F(IsaSlaveTest, RandomCyclesAgree) {
   }
 }
 
+TEST(IsaSlaveOnABoard, RandomCyclesAgree) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    IsaBench board(true);
+    board.random_run(random_seed(seed), 3000);
+    ASSERT_EQ(board.both.difference(), "") << "seed " << seed;
+  }
+}
+
 TEST_F(IsaSlaveTest, ComparisonSeesAWrongBaseAddress) {
   both.mutate = [](Inputs& in) { in.io_base ^= 0x80; };
   io_read(0x212);

@@ -1,9 +1,12 @@
 // A model and its Verilated twin, driven with the same inputs and compared at every tick, outputs and combinational
 // reads alike. It also holds the model to its promise: next_event() must not be later than the next change of an
-// output.
+// output. While the model is judged it is asleep as long as its inputs rest and it promises nothing, and its twin is a
+// second one that is awake at every edge.
 #pragma once
 
+#include <cstring>
 #include <functional>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -32,35 +35,44 @@ class Lockstep {
 
   Lockstep(RtlBlock<Inputs, Outputs> rtl, Model& model, Show show) : rtl_(std::move(rtl)), model_(model), show_(show) {
     model_.reset(0);
+    if (model_judged()) {
+      awake_ = std::make_unique<Model>("awake");
+      awake_->reset(0);
+    }
   }
 
-  Inputs in;
+  Inputs in = Inputs();                 // with zeros between the fields
   std::function<void(Inputs&)> mutate;  // negative controls: distorts what the model sees
   bool lazy = false;  // executes the model's edges only when it asks for them, or when its inputs change
 
-  // `moved`: inputs may have. While the model is judged, it sleeps as long as they rest and it promises nothing.
-  void tick(bool moved = true) {
-    if (moved || !model_judged()) apply();
+  void tick() {
+    apply();
     const Outputs before = judged();
     const Tick promised = model_.next_event();
     ++now_;
-    if (!model_judged()) rtl_.tick();
-    if (!(lazy || model_judged()) || promised <= now()) model_.advance(now());
+    if (awake_)
+      awake_->advance(now());
+    else
+      rtl_.tick();
+    if (!(lazy || awake_) || promised <= now()) model_.advance(now());
     compare();
     if (judged() != before && promised > now())
       note("outputs changed, but next_event() said tick " + std::to_string(promised));
   }
   void ticks(int n) {
-    for (int i = 0; i < n; ++i) tick(i == 0);
+    for (int i = 0; i < n; ++i) tick();
   }
   // Through the next edge of clk_ref, n times.
   void ref(int n = 1) {
-    const Tick begin = now(), end = next_ref_edge(begin) + (n - 1) * kTicksPerRef;
-    while (now() < end) tick(now() == begin);
+    const Tick end = next_ref_edge(now()) + (n - 1) * kTicksPerRef;
+    while (now() < end) tick();
   }
   void reset() {
     apply();
-    if (!model_judged()) rtl_.reset();
+    if (awake_)
+      awake_->reset(now());
+    else
+      rtl_.reset();
     model_.reset(now());
     compare();
   }
@@ -74,39 +86,49 @@ class Lockstep {
   }
 
   Tick now() const { return now_; }
+  bool asleep() const { return model_.next_event() == kNever; }  // the model, until an input moves
   // First difference of the two, "" while they agree.
   const std::string& difference() const { return difference_; }
 
  private:
   void apply() {
+    if (awake_ && at_rest()) return;
     model_.advance(now());  // edges that were left out belong to the old inputs
-    model_.in = in;
+    model_.in = applied_ = in;
     if (mutate) mutate(model_.in);
     rd_moved(model_, 0);
-    if (!model_judged()) {
+    if (awake_) {
+      awake_->in = in;
+      rd_moved(*awake_, 0);
+    } else {
       rtl_.in = in;
       rtl_.settle();
     }
     compare();
   }
-  Outputs judged() const { return model_judged() ? show_(model_) : rtl_.outputs(); }
+  // By all bytes: where those between the fields differ the model is woken for nothing.
+  bool at_rest() const { return std::memcmp(&in, &applied_, sizeof in) == 0; }
+  Outputs judged() const { return awake_ ? show_(model_) : rtl_.outputs(); }
   void compare() {
-    if (!difference_.empty() || !engines_compared()) return;
-    const Outputs rtl = rtl_.outputs(), model = show_(model_);
-    for (std::size_t i = 0; i < rtl.size(); ++i) {
-      if (rtl[i].second == model[i].second) continue;
+    if (!difference_.empty() || !(engines_compared() || awake_)) return;
+    const Outputs twin = awake_ ? show_(*awake_) : rtl_.outputs(), model = show_(model_);
+    for (std::size_t i = 0; i < twin.size(); ++i) {
+      if (twin[i].second == model[i].second) continue;
       std::ostringstream text;
-      text << std::hex << rtl[i].first << ": RTL " << rtl[i].second << ", model " << model[i].second;
+      text << std::hex << twin[i].first << ": " << (awake_ ? "awake " : "RTL ") << twin[i].second << ", model "
+           << model[i].second;
       return note(text.str());
     }
   }
   void note(const std::string& text) {
-    if (difference_.empty() && (engines_compared() || model_judged()))
+    if (difference_.empty() && (engines_compared() || awake_))
       difference_ = "tick " + std::to_string(now()) + ": " + text;
   }
 
   RtlBlock<Inputs, Outputs> rtl_;
   Model& model_;
+  std::unique_ptr<Model> awake_;  // while the model is judged
+  Inputs applied_ = Inputs();
   Show show_;
   Tick now_ = 0;
   std::string difference_;

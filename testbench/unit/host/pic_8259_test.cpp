@@ -248,6 +248,21 @@ TEST_F(Pic8259Clocks, EdgeRaisesTheInterruptAtTheThirdClock) {
   EXPECT_LOCKSTEP(both);
 }
 
+// systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
+TEST_F(Pic8259Clocks, SleepsWhileNothingMoves) {
+  initialize();
+  EXPECT_TRUE(both.asleep());
+  line(1, true);
+  settle();
+  EXPECT_TRUE(both.asleep()) << "a request";
+  read(kAcknowledge);
+  EXPECT_TRUE(both.asleep()) << "it is acknowledged, its line still high";
+  line(1, false);
+  settle();
+  EXPECT_TRUE(both.asleep());
+  EXPECT_LOCKSTEP(both);
+}
+
 // A line that falls for `low` clocks and rises `lead` clocks around the acknowledge of its last edge is asked for
 // again, unless the controller has not seen it high before: then there was nothing to acknowledge.
 TEST_F(Pic8259Clocks, EdgeThatMeetsTheAcknowledgeIsKept) {

@@ -1,6 +1,8 @@
 // What the ports of the Verilated modules of rtl/host are called.
 #include "testbench/unit/host/rtl_blocks.h"
 
+#include <algorithm>
+
 #include "Vdpram.h"
 #include "Vdpram___024root.h"
 #include "Vhost_interrupt.h"
@@ -169,8 +171,20 @@ RtlBlock<HostPortInputs, Outputs> make_rtl_host_port() {
 RtlBlock<DpramInputs, Outputs> make_rtl_dpram(int seed) {
   return verilated_shell<Vdpram, DpramInputs, Outputs>(drive, sample, seed);
 }
-RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave() {
-  return verilated_shell<Visa_slave, IsaSlaveInputs, Outputs>(drive, sample);
+RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave(bool on_a_board) {
+  const auto seen = [](const Visa_slave& v) { return seen_by_a_board(sample(v)); };
+  return on_a_board ? verilated_shell<Visa_slave, IsaSlaveInputs, Outputs>(drive, +seen)
+                    : verilated_shell<Visa_slave, IsaSlaveInputs, Outputs>(drive, sample);
+}
+
+Outputs seen_by_a_board(Outputs outputs) {
+  const auto of = [&](std::string_view name) -> std::uint32_t& {
+    return std::find_if(outputs.begin(), outputs.end(), [=](const auto& o) { return o.first == name; })->second;
+  };
+  if (of("hp_addr") != 7) of("hp_rd_done") = 0;
+  for (const auto& [strobe, data] : {std::pair{"hp_wr", "hp_wdata"}, {"pic_wr", "pic_wdata"}, {"mem_wr", "mem_wdata"}})
+    if (of(strobe) == 0) of(data) = 0;
+  return outputs;
 }
 
 }  // namespace brick

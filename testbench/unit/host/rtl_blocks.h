@@ -19,6 +19,10 @@ RtlBlock<HostInterruptInputs, Outputs> make_rtl_host_interrupt(int seed = shell_
 RtlBlock<HostSignalsInputs, Outputs> make_rtl_host_signals();
 RtlBlock<HostPortInputs, Outputs> make_rtl_host_port();
 RtlBlock<DpramInputs, Outputs> make_rtl_dpram(int seed = 0);  // memory has no reset: as the model, it starts as zero
-RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave();
+RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave(bool on_a_board = false);
+
+// Of an ISA slave as a board sees it: the end of a read does something behind it at +7 alone, and nobody looks at data
+// without their strobe.
+Outputs seen_by_a_board(Outputs outputs);
 
 }  // namespace brick

@@ -1,6 +1,7 @@
 // What rigs with RTL and model side by side do: they compare the two, unless `./dev mutate` asks what would hold a rule
 // that both had misread (docs/mutation.md); the negative controls of the comparisons fail then. What a test reads of
-// such a rig is the RTL's, or the model's while it is the model that is judged: the RTL stands still then.
+// such a rig is the RTL's, or the model's while it is the model that is judged: the RTL stands still then, and what a
+// model shows that sleeps until its next event is compared with what it shows when it is kept awake.
 #pragma once
 
 #include <cstdlib>

@@ -1,9 +1,12 @@
 // RTL and model of a servo IC side by side, for what its channels do. Every tick compares all pins and the word at the
 // present address, and holds the model to its promise: next_motor_event() is not later than the next change of a pin.
+// While the model is judged it sleeps until then, and its twin is a second one that is awake at every edge.
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <functional>
+#include <memory>
 #include <sstream>
 #include <string>
 
@@ -25,8 +28,12 @@ constexpr std::uint32_t kOwnClocks =
 
 class ChannelsRig {
  public:
-  ServoIcInputs in;
-  bool lazy = false;  // the model's edges are executed only when it asks
+  ChannelsRig() {
+    if (model_judged()) awake_ = std::make_unique<ServoIc>(sc_core::sc_gen_unique_name("awake"));
+  }
+
+  ServoIcInputs in = ServoIcInputs();  // with zeros between the fields
+  bool lazy = false;                   // the model's edges are executed only when it asks
   std::function<void(bool x, unsigned addr, std::uint32_t&)> mutate;  // negative controls: what the model is written
 
   void tick() {
@@ -35,16 +42,18 @@ class ChannelsRig {
     const ChannelPins before = judged();
     ++now_;
     const bool ref = now_ % kTicksPerRef == 0;
-    if (!model_judged()) rtl_.tick();
+    if (!awake_) rtl_.tick();
     const bool strobe = ref && (in.we || in.rd);
     if (!in.rst_n) {
-      model_.reset(now_);
+      each([this](ServoIc& ic) { ic.reset(now_); });
       seen_ = now_;
-    } else if (!lazy || promised <= now_ || strobe) {
-      advance(now_);
+    } else {
+      if (awake_) awake_->advance(now_);
+      if (!(lazy || awake_) || promised <= now_ || strobe) advance(now_);
     }
     if (strobe && in.rst_n) {
-      if (in.rd) model_.read_taken(in.x, in.addr);
+      if (in.rd) each([this](ServoIc& ic) { ic.read_taken(in.x, in.addr); });
+      if (in.we && awake_) awake_->write(in.x, in.addr, in.wdata);
       std::uint32_t value = in.wdata;
       if (in.we && mutate) mutate(in.x, in.addr, value);
       if (in.we) model_.write(in.x, in.addr, value);
@@ -74,7 +83,7 @@ class ChannelsRig {
     apply();
     advance(now_);
     compare();
-    return model_judged() ? model_.read(x, addr) : rtl_.rdata();
+    return awake_ ? model_.read(x, addr) : rtl_.rdata();
   }
   // A read as the bus does it, with its side effect.
   std::uint32_t read(bool x, unsigned addr) {
@@ -107,7 +116,7 @@ class ChannelsRig {
   }
 
   ChannelPins pins() {
-    if (model_judged()) advance(now_);
+    if (awake_) advance(now_);
     return judged();
   }
   bool pwm(unsigned channel, unsigned bit) { return (pins().pwm >> (6 * (channel - 1) + bit) & 1) != 0; }
@@ -121,42 +130,53 @@ class ChannelsRig {
     model_.advance(t);
     seen_ = t;
   }
+  template <class Act>
+  void each(const Act& act) {  // model
+    act(model_);
+    if (awake_) act(*awake_);
+  }
   void apply() {
+    if (awake_ && at_rest()) return;
     advance(now_);  // edges that were left out belong to the old inputs
-    if (!model_judged()) {
+    if (!awake_) {
       rtl_.in = in;
       rtl_.settle();
     }
-    if (!in.rst_n) model_.reset(now_);
-    set_inputs(model_, in);
+    if (!in.rst_n) each([this](ServoIc& ic) { ic.reset(now_); });
+    each([this](ServoIc& ic) { set_inputs(ic, in); });
+    applied_ = in;
   }
-  ChannelPins judged() const { return model_judged() ? channel_pins(model_) : channel_pins(rtl_); }
+  // By all bytes: where those between the fields differ the model is woken for nothing.
+  bool at_rest() const { return std::memcmp(&in, &applied_, sizeof in) == 0; }
+  ChannelPins judged() const { return awake_ ? channel_pins(model_) : channel_pins(rtl_); }
   void compare() {
-    if (!difference.empty() || !engines_compared()) return;
-    const ChannelPins a = channel_pins(rtl_), b = channel_pins(model_);
+    if (!difference.empty() || !(engines_compared() || awake_)) return;
+    const ChannelPins a = awake_ ? channel_pins(*awake_) : channel_pins(rtl_), b = channel_pins(model_);
     if (a.pwm != b.pwm) note("PWM", a.pwm, b.pwm);
     if (a.others != b.others) note("pins", a.others, b.others);
     if (a.serial != b.serial) note("serial", a.serial, b.serial);
     if (a.phase != b.phase || a.servo != b.servo) note("clocks", a.phase * 2 + a.servo, b.phase * 2 + b.servo);
     if (seen_ != now_ || (mutate && written_word(in.x, in.addr))) return;
-    const std::uint32_t word = model_.read(in.x, in.addr);
-    if (rtl_.rdata() != word) note(in.x ? "X" : "Y", rtl_.rdata(), word);
+    const std::uint32_t twin = awake_ ? awake_->read(in.x, in.addr) : rtl_.rdata(), word = model_.read(in.x, in.addr);
+    if (twin != word) note(in.x ? "X" : "Y", twin, word);
   }
   // Words that only read back what was written: of no use to find out what the writing did.
   static bool written_word(bool x, unsigned addr) {
     const unsigned offset = addr & 7;
     return x ? offset >= 4 : offset < 5 || offset == 7;
   }
-  void note(const std::string& what, std::int64_t rtl, std::int64_t model) {
-    if (!difference.empty() || !(engines_compared() || model_judged())) return;
+  void note(const std::string& what, std::int64_t twin, std::int64_t model) {
+    if (!difference.empty() || !(engines_compared() || awake_)) return;
     std::ostringstream text;
-    text << "tick " << now_ << " word " << (in.x ? "X" : "Y") << in.addr << ": " << what << std::hex << ": RTL " << rtl
-         << ", model " << model;
+    text << "tick " << now_ << " word " << (in.x ? "X" : "Y") << in.addr << ": " << what << std::hex
+         << (awake_ ? ": awake " : ": RTL ") << twin << ", model " << model;
     difference = text.str();
   }
 
   RtlServoIc rtl_;
   ServoIc model_{sc_core::sc_gen_unique_name("ic")};
+  std::unique_ptr<ServoIc> awake_;  // while the model is judged
+  ServoIcInputs applied_ = ServoIcInputs();
   Tick now_ = 0, seen_ = 0;
 };
 

@@ -288,7 +288,7 @@ class Fresh(unittest.TestCase):
         judge = mock.Mock(module=mock.Mock(), **{"inputs.return_value": "x"})
         judge.module.kind, judge.module.name, judge.module.file = "rtl", "m", "rtl/host/pic_8259.sv"
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
-            records.write(records.path_of("rtl", "m", None), head, [{"number": 1}])
+            records.write(records.path_of("rtl", "m", None), head, [Reports.ROW])
             return session.Session(judge, mock.Mock(**{"part": None, "all": False, "count": None, "seed": 1,
                                                        "renew": False, **options})).is_fresh()
 
@@ -309,7 +309,7 @@ class Fresh(unittest.TestCase):
         ("alive", "", "", False), ("equal", "filter", "proved equal", False))
 
     def test_renewed_what_tests_kill_that_are_there_stays_while_the_sources_do(self):
-        """Of other inputs; seed and count are those of the results."""
+        """Of other inputs; seed and count are those of the results. By what it is: another finder, other numbers."""
         rows = [{**Reports.ROW, "number": n, "line": n, "text": str(n), "status": status, "stage": stage, "by": by}
                 for n, (status, stage, by, _) in enumerate(self.RENEWED)]
         judge = mock.Mock(**{"inputs.return_value": "y"})
@@ -325,7 +325,7 @@ class Fresh(unittest.TestCase):
             (judge.tree / "bin/unit_a").write_text(f"#!/bin/sh\nprintf '{listed}'\n")
             (judge.tree / "bin/unit_a").chmod(0o755)
             records.write(records.path_of("rtl", "m", None), head, rows)
-            there = {n for n, (*_, there) in enumerate(self.RENEWED) if there}
+            there = {records.key(row) for row, (*_, there) in zip(rows, self.RENEWED, strict=True) if there}
             for source, kept in (("s", there), ("other", set())):
                 with mock.patch.object(session, "source_hash", lambda *_, now=source: now):
                     one = session.Session(judge, options)
