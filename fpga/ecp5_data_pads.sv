@@ -1,6 +1,6 @@
 // D of Port A: pads of two ways that /RD itself ends, by a gate beside each eight, sooner than through the flip-flops
-// that it clears (host-bus:2.6/5); these have to be off before it falls again. The gates are cells of their own, so
-// that none is merged.
+// that it clears (host-bus:2.6/5); these are off before it falls again (host-bus:2.2, row 113). The gates are cells of
+// their own, so that none is merged.
 `default_nettype none
 
 module ecp5_data_pads (

@@ -178,8 +178,8 @@ def main():
             f"nextpnr-ecp5, grade {grade}, seed {seed}")
         placed.append((grade, seed, json.loads((folder / f"{stem}.report").read_text())))
     lines, problems = tables(placed)
-    with open(folder / f"{top}-{SPEED}-1.sdf") as sdf:
-        lines += ["", "Pads, of seed 1:", "", *fpga_pads.page(*fpga_pads.delays(fpga_pads.read(sdf)))]
+    delays = [folder / f"{top}-{grade}-{seed}.sdf" for grade, seed, _ in placed if grade == SPEED]
+    lines += ["", f"Pads, the worst of {len(delays)} seeds:", "", *fpga_pads.of_files(delays)]
     text = "\n".join([*lines, "", f"Measured {as_of(ROOT)}.", ""])
     print(text, end="")
     if options.write:

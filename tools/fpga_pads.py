@@ -1,8 +1,8 @@
 """Delays between pads and flip-flops in a placed design, from the SDF file that nextpnr writes; docs/fpga.md.
 
 nextpnr judges what runs from clock to clock. Here is the rest: pad to flip-flop, flip-flop to pad, pad to pad without a
-clock, /RD to the end of D, flip-flop to the resets of others; and what that means for the rows of the data sheet of
-Port A and ISA.
+clock, /RD to the end of D and to what enables it, flip-flop to the resets of others; and what that means for the rows
+of the data sheet of Port A and ISA.
 """
 
 import collections
@@ -20,6 +20,11 @@ PAD_IN, PAD_OUT, SKEW = 0.70, 3.50, 0.42  # tSUPLL, tCOPLL, tSKEW_PRI
 # host-bus:2.2), which is before it at the fastest clock that pads are allowed for, I52 = 15.
 BEHIND_TA = TICK + 0.25 * 1000 / (CPU * 16) - 3.0
 TO_PAD = 10.0  # D and /TA, from their clock
+# /RD is high for row 113 of host-bus:2.2 at least, behind gate ICs and behind the RAM, at the fastest clock up to which
+# host-bus:2.5 promises that D is off then.
+SLOW_I52, RAM_I52 = 15, 13
+RD_HIGH = 2.75 * 1000 / (CPU * (SLOW_I52 + 1)) - 4.0
+RD_HIGH_RAM = 1.75 * 1000 / (CPU * (RAM_I52 + 1)) - 4.0
 RAM, STROBES = "u_dpram.", "u_bus_strobes."  # cells
 # Which pads must keep a time, and the rows of host-bus they are for: to a flip-flop, or from one.
 PORT_A_IN, ISA_IN = r"pa_.*_n?io?", r"isa_(?!sd_io|resetdrv).*_n?i"
@@ -108,8 +113,10 @@ def bus(name):
 def delays(graph):
     """Of each pad, a bus as one, {kind: the longest way}, and that of the reset. Kinds: "in" to a flip-flop, "through"
     from another pad, "out" from a flip-flop to the level, "enable" to what turns the pad on, "ram" from the dual-ported
-    RAM to either, "gate" from /RD to what turns the pad on, "off" the same by way of a flip-flop that /RD clears. What
-    a strobe clocks follows no clock and counts nowhere.
+    RAM to either. What a strobe clocks follows no clock and counts nowhere. Of D alone, for each of its pads, from /RD
+    to what turns it on: "off" by way of a flip-flop that /RD clears, "off_ram" by one of the RAM, "end" by a gate where
+    the pad has one, which ends D whatever the flip-flops do, else by these. The file has no time from a reset to Q:
+    that from the clock stands for it.
     """
     nodes = set(graph.after) | set(graph.before)
     flip_flops = {node: delay for node, delay in graph.setup.items() if node[1] != "LSR"}
@@ -121,11 +128,12 @@ def delays(graph):
     read = longest(graph.before, {node: 0.0 for node in pads_in if pad(node[0]) == "pa_rd_ni"})
     cleared = {(cell, "Q"): read((cell, port)) + launch.get((cell, "Q"), 0.0)
                for cell, port in clears if read((cell, port)) is not None}
+    off = longest(graph.before, {node: delay for node, delay in cleared.items() if RAM not in node[0]})
+    off_ram = longest(graph.before, {node: delay for node, delay in cleared.items() if RAM in node[0]})
     inwards, resets = longest(graph.after, flip_flops), longest(graph.before, graph.launch)
     to_level = {"out": longest(graph.before, others), "ram": longest(graph.before, ram),
                 "through": longest(graph.before, pads_in)}
-    to_enable = {"enable": to_level["out"], "ram": to_level["ram"], "through": to_level["through"],
-                 "gate": read, "off": longest(graph.before, cleared)}
+    to_enable = {"enable": to_level["out"], "ram": to_level["ram"], "through": to_level["through"]}
     found = collections.defaultdict(dict)
     for node in sorted(nodes):
         if not pad(node[0]):
@@ -134,8 +142,17 @@ def delays(graph):
         ways = {"O": {"in": inwards}, "I": to_level, "T": to_enable}.get(node[1], {})
         for kind, way in ways.items():
             keep(row, kind, way(node))
+        if node[1] == "T" and re.fullmatch(D, pad(node[0])):
+            for kind, delay in ends(read(node), off(node), off_ram(node) if ram else 0.0).items():
+                keep(row, kind, delay)
     reset = [resets(node) + graph.setup[node] for node in clears if resets(node)]
     return dict(found), max(reset, default=None)
+
+
+def ends(gate, off, off_ram):
+    """How one pad of D is ended, from the ways that it has; what it lacks takes for ever."""
+    off, off_ram = (math.inf if way is None else way for way in (off, off_ram))
+    return {"end": max(off, off_ram) if gate is None else gate, "off": off, "off_ram": off_ram}
 
 
 def keep(row, kind, delay):
@@ -148,18 +165,25 @@ def worst(found, pattern, *kinds):
     return max(ways, default=0.0)
 
 
+def spare(row):
+    return row.limit - row.has
+
+
 def rows(found):
     """The rows of the data sheet that pads decide, the one with the least to spare first."""
     a_in = worst(found, PORT_A_IN, "in") + PAD_IN + SKEW
     isa_in = worst(found, ISA_IN, "in") + PAD_IN + SKEW
     ta = worst(found, TA, "out", "ram")
-    ends = worst(found, D, "gate") or worst(found, D, "off")  # a gate ends D whatever the flip-flops do
     out = {name: worst(found, name, "out", "enable") + PAD_OUT + SKEW
            for name in (D, "isa_sd_io", "isa_iochrdy_io", MEMCS16)}
     table = [(PORT_A_IN, Row("host-bus:2.6", "pads of Port A to a flip-flop", a_in, TICK)),
              (D, Row("host-bus:2.6", "clock to D, of registers", out[D], TO_PAD)),
              (D, Row("host-bus:2.6/5", "/RD to the end of D, without a clock",
-                     ends + PAD_IN + PAD_OUT, TICK)),
+                     worst(found, D, "end") + PAD_IN + PAD_OUT, TICK)),
+             (D, Row("host-bus:2.2, row 113", f"/RD to registers off D behind its gate, up to I52 = {SLOW_I52}",
+                     worst(found, D, "off"), RD_HIGH)),
+             (TA, Row("host-bus:2.2, row 113", f"/RD to the RAM off D behind its gate, up to I52 = {RAM_I52}",
+                      worst(found, D, "off_ram"), RD_HIGH_RAM)),
              (TA, Row("host-bus:2.6", "clock to /TA", ta + PAD_OUT + SKEW, TO_PAD)),
              (TA, Row("host-bus:6.9/8", "D of the RAM behind /TA, which comes a clock later",
                       worst(found, D, "ram") - ta, BEHIND_TA)),
@@ -176,7 +200,7 @@ def rows(found):
              (ISA_IN, Row("host-bus:3.4, row 16", "LA to MEMCS16#, 3 ticks between", 3 * TICK + isa_in +
                           out[MEMCS16], 66.0))]
     there = (row for pads, row in table if any(re.fullmatch(pads, name) for name in found))  # a chip has some alone
-    return sorted(there, key=lambda row: row.limit - row.has)
+    return sorted(there, key=spare)
 
 
 def wait_states(found, i52):
@@ -188,11 +212,24 @@ def wait_states(found, i52):
     return least if least <= 31 else None
 
 
-def page(found, reset):
+def of_all(placed):
+    """Of each pad the longest way in any of several placements."""
+    found = collections.defaultdict(dict)
+    for name, kind, delay in ((name, *way) for one, _ in placed for name, ways in one.items() for way in ways.items()):
+        keep(found[name], kind, delay)
+    return dict(found)
+
+
+def page(placed):
+    """The tables of [(ways, reset)] of several placements, each line that of the worst."""
+    judged = collections.defaultdict(list)
+    for row in (row for one, _ in placed for row in rows(one)):
+        judged[row.rule, row.what].append(row)
     yield from ("| rule | what | ns here | ns allowed | to spare |", "|---|---|---|---|---|")
-    for row in rows(found):
-        missed = "" if row.has <= row.limit else " **missed**"
-        yield f"| {row.rule} | {row.what} | {row.has:.1f} | {row.limit:.1f} | {row.limit - row.has:.1f}{missed} |"
+    for row in sorted((max(same, key=lambda row: row.has) for same in judged.values()), key=spare):
+        missed = "" if spare(row) >= 0 else " **missed**"
+        yield f"| {row.rule} | {row.what} | {row.has:.1f} | {row.limit:.1f} | {spare(row):.1f}{missed} |"
+    found, reset = of_all(placed), max((reset for _, reset in placed if reset is not None), default=None)
     least = ((i52, wait_states(found, i52)) for i52 in (0, 7, 9, 15, 23, 31))
     told = ", ".join(f"{'none' if states is None else states} at {i52}" for i52, states in least)
     yield from ("", f"Least wait states of gate ICs on this chip, by I52: {told}.", "",
@@ -208,6 +245,13 @@ def page(found, reset):
         yield from ("", f"The reset reaches the last flip-flop {reset:.2f} ns after its clock, of {TICK:.2f}{missed}.")
 
 
+def of_files(paths):
+    placed = []
+    for path in paths:
+        with open(path) as sdf:
+            placed.append(delays(read(sdf)))
+    return page(placed)
+
+
 if __name__ == "__main__":
-    with open(sys.argv[1]) as sdf:
-        print("\n".join(page(*delays(read(sdf)))))
+    print("\n".join(of_files(sys.argv[1:])))

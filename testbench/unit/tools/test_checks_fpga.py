@@ -1,6 +1,7 @@
 """Negative controls of tools/fpga.py and fpga_pads.py: what is judged how, delays from a file, one reset a design."""
 
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -74,26 +75,53 @@ SDF = r"""
 )
 """
 
-# D: its level from the RAM, its enable from a flip-flop that /RD clears, and from one that a strobe clocks.
-DRIVEN = r"""
-(CELL (CELLTYPE "top")
-  (INTERCONNECT u_core.u_dpram.mem/DOB0 u_pa_data.gen_pad\[0\].u_pad/I (1:2:500) (1:2:500))
-  (INTERCONNECT pa_rd_ni\$tr_io/O oe/LSR (1:2:1000) (1:2:1000))
-  (INTERCONNECT oe/Q u_pa_data.gen_pad\[0\].u_pad/T (1:2:2000) (1:2:2000))
-  (INTERCONNECT u_core.u_bus_strobes.rd/Q u_pa_data.gen_pad\[1\].u_pad/T (1:2:5000) (1:2:5000))
-)
+RAM_MEMORY = """
 (CELL
   (CELLTYPE "DP16KD")
   (INSTANCE u_core.u_dpram.mem)
   (IOPATH CLKB DOB0 (1:2:4260) (1:2:4260))
-)
-""" + "".join(f"""
+)"""
+LUT = """
+(CELL
+  (CELLTYPE "TRELLIS_COMB")
+  (INSTANCE {})
+  (IOPATH A F (1:2:240) (1:2:240))
+  (IOPATH B F (1:2:240) (1:2:240))
+  (IOPATH C F (1:2:240) (1:2:240))
+)"""
+FLIP_FLOP = """
 (CELL
   (CELLTYPE "TRELLIS_FF")
-  (INSTANCE {cell})
+  (INSTANCE {})
   (IOPATH CLK Q (1:2:400) (1:2:400))
   (SETUPHOLD (posedge LSR) (posedge CLK) (1:2:287) (0:0:0))
-)""" for cell in ("oe", "u_core.u_bus_strobes.rd"))
+)"""
+ENDS, AGAIN = "host-bus:2.6/5", "host-bus:2.2, row 113"  # rows of D
+OF_REGISTERS, OF_RAM, OF_STROBE = "u_core.u_bus_read.oe", "u_core.u_dpram.drive", "u_core.u_bus_strobes.rd"
+
+
+def of_data(gates=(0, 1), cleared=(OF_REGISTERS, OF_RAM)):
+    """D of two pads: its level from the RAM, its enable by two flip-flops, those in `cleared` by /RD, and by one that a
+    strobe clocks; beside the pads in `gates` a gate of /RD, 0.1 ns later at the second."""
+    read, pad = r"pa_rd_ni\$tr_io/O", r"u_pa_data.gen_pad\[{}\].u_pad/{}".format
+    wires = [("u_core.u_dpram.mem/DOB0", pad(0, "I"), 500), (f"{OF_REGISTERS}/Q", "on/A", 2000),
+             (f"{OF_RAM}/Q", "on/B", 3000), (f"{OF_STROBE}/Q", "on/C", 5000)]
+    wires += [(read, f"{cell}/LSR", 1000) for cell in cleared]
+    for i in (0, 1):
+        if i in gates:
+            wires += [(read, f"gate{i}/A", 600 + 100 * i), ("on/F", f"gate{i}/B", 100),
+                      (f"gate{i}/F", pad(i, "T"), 700)]
+        else:
+            wires.append(("on/F", pad(i, "T"), 700))
+    text = "\n".join(f"(INTERCONNECT {a} {b} (1:2:{delay}) (1:2:{delay}))" for a, b, delay in wires) + RAM_MEMORY
+    text += "".join(LUT.format(cell) for cell in ("on", "gate0", "gate1"))
+    text += "".join(FLIP_FLOP.format(cell) for cell in (OF_REGISTERS, OF_RAM, OF_STROBE))
+    return fpga_pads.delays(fpga_pads.read(text.splitlines()))[0]
+
+
+def row_of(found, rule):
+    """The row of D by that rule with the least to spare."""
+    return next(row for row in fpga_pads.rows(found) if row.rule == rule)
 
 
 class Pads(unittest.TestCase):
@@ -118,32 +146,50 @@ class Pads(unittest.TestCase):
         self.assertAlmostEqual(self.reset, 0.4 + 4.0 + 0.287)
 
     def test_what_turns_a_pad_on_and_what_leaves_the_ram_are_told_apart_from_what_a_strobe_clocks(self):
-        found, _ = fpga_pads.delays(fpga_pads.read(DRIVEN.splitlines()))
-        ways = found["pa_data_io"]
-        self.assertAlmostEqual(ways["enable"], 0.4 + 2.0)
+        ways = of_data(gates=())["pa_data_io"]
+        self.assertAlmostEqual(ways["enable"], 0.4 + 2.0 + 0.24 + 0.7)
         self.assertAlmostEqual(ways["ram"], 4.26 + 0.5)
         self.assertNotIn("out", ways)
 
     def test_the_end_of_a_read_goes_by_what_it_clears(self):
-        found, _ = fpga_pads.delays(fpga_pads.read(DRIVEN.splitlines()))
-        self.assertAlmostEqual(found["pa_data_io"]["off"], 1.0 + 0.4 + 2.0)
-        row = next(row for row in fpga_pads.rows(found) if row.rule == "host-bus:2.6/5")
-        self.assertAlmostEqual(row.has, 3.4 + 0.7 + 3.5)
+        row = row_of(of_data(gates=()), ENDS)
+        self.assertAlmostEqual(row.has, 1.0 + 0.4 + 3.0 + 0.24 + 0.7 + 0.7 + 3.5)
 
     def test_a_gate_of_rd_ends_it_sooner(self):
-        gate = DRIVEN.replace("oe/Q u_pa", "gate/F u_pa").replace('(CELL (CELLTYPE "top")', r"""(CELL (CELLTYPE "top")
-  (INTERCONNECT pa_rd_ni\$tr_io/O gate/A (1:2:600) (1:2:600))
-  (INTERCONNECT oe/Q gate/B (1:2:100) (1:2:100))""") + """
-(CELL
-  (CELLTYPE "TRELLIS_COMB")
-  (INSTANCE gate)
-  (IOPATH A F (1:2:240) (1:2:240))
-  (IOPATH B F (1:2:240) (1:2:240))
-)"""
-        found, _ = fpga_pads.delays(fpga_pads.read(gate.splitlines()))
-        self.assertAlmostEqual(found["pa_data_io"]["off"], 1.0 + 0.4 + 0.1 + 0.24 + 2.0)
-        row = next(row for row in fpga_pads.rows(found) if row.rule == "host-bus:2.6/5")
-        self.assertAlmostEqual(row.has, 0.6 + 0.24 + 2.0 + 0.7 + 3.5)
+        self.assertAlmostEqual(row_of(of_data(), ENDS).has, 0.7 + 0.24 + 0.7 + 0.7 + 3.5)
+
+    def test_one_pad_without_its_gate_is_the_late_one(self):
+        for gates in ((0,), (1,)):
+            row = row_of(of_data(gates), ENDS)
+            self.assertAlmostEqual(row.has, 1.0 + 0.4 + 3.0 + 0.24 + 0.7 + 0.7 + 3.5)
+            self.assertLess(row.limit, row.has)
+
+    def test_behind_its_gate_d_is_disabled_before_rd_falls_again(self):
+        found = of_data() | {"pa_ta_n_o": {}}
+        of_ram, of_registers = (row for row in fpga_pads.rows(found) if row.rule == AGAIN)
+        to_pad = 0.24 + 0.1 + 0.24 + 0.7
+        self.assertAlmostEqual(of_registers.has, 1.0 + 0.4 + 2.0 + to_pad)
+        self.assertAlmostEqual(of_registers.limit, 2.75 * 1000 / 9.8304 / 16 - 4)  # I52 = 15
+        self.assertAlmostEqual(of_ram.has, 1.0 + 0.4 + 3.0 + to_pad)
+        self.assertAlmostEqual(of_ram.limit, 1.75 * 1000 / 9.8304 / 14 - 4)  # I52 = 13
+
+    def test_what_rd_does_not_clear_opens_the_gate_again(self):
+        for cleared in ((OF_REGISTERS,), (OF_RAM,)):
+            found = of_data(cleared=cleared) | {"pa_ta_n_o": {}}
+            self.assertEqual(row_of(found, AGAIN).has, math.inf)
+            self.assertLess(row_of(found, ENDS).has, 8.0)
+            self.assertEqual(row_of(of_data((0,), cleared), ENDS).has, math.inf)
+            self.assertIn("| inf |", "".join(fpga_pads.page([(found, None)])))
+
+    def test_of_several_placements_each_line_is_that_of_the_worst(self):
+        late = {"pa_ta_no": {"out": 6.2}, "pa_a_i": {"in": 2.0}}
+        soon = {"pa_ta_no": {"out": 3.0}, "pa_a_i": {"in": 7.0}}
+        for placed in ([(late, 8.0), (soon, 5.0)], [(soon, None), (late, 8.0)]):
+            text = "\n".join(fpga_pads.page(placed))
+            self.assertIn("clock to /TA | 10.1 | 10.0 | -0.1 **missed** |", text)
+            self.assertIn("pads of Port A to a flip-flop | 8.1 | 8.5 | 0.4 |", text)
+            self.assertIn("| `pa_a_i` | 7.00 |", text)
+            self.assertIn("8.00 ns after its clock", text)
 
     def test_the_ram_may_be_a_tick_less_1_41_ns_behind_its_ta(self):
         found = {"pa_data_io": {"ram": 10.0}, "pa_ta_n_o": {"ram": 3.0, "out": 1.0}}
@@ -158,7 +204,7 @@ class Pads(unittest.TestCase):
 
     def test_a_pad_that_is_late_is_the_first_row_and_missed(self):
         found = {"pa_ta_no": {"out": 6.2}, "pa_a_i": {"in": 2.0}}
-        text = list(fpga_pads.page(found, 9.0))
+        text = list(fpga_pads.page([(found, 9.0)]))
         self.assertIn("clock to /TA | 10.1 | 10.0 | -0.1 **missed** |", text[2])
         self.assertIn("9.00 ns after its clock, of 8.48 **missed**", text[-1])
 
