@@ -177,6 +177,22 @@ TYPED_TEST(MacroIcOn, ResetStopsDrivingAndRestoresTheRegisters) {
   this->rig.tick();
   EXPECT_EQ(this->rig.read(true, macro::kClock), 0x3038D2u);
   EXPECT_EQ(this->rig.read(false, macro::kJio), 0u);
+  this->rig.run(3 * 4 * 13057);  // PHASE and SERVO periods of the reset values
+  EXPECT_FALSE(this->rig.phase_oe()) << "nor later";
+  EXPECT_FALSE(this->rig.servo_oe());
+}
+
+// The kind is a strap: it acts without a write.
+TYPED_TEST(MacroIcOn, AnIcThatBecomesAMacroGateLetsGoOfServoAndBack) {
+  this->drive(20, 0, 0, 0);
+  this->rig.run(3 * 13057);
+  ASSERT_TRUE(this->rig.servo_oe());
+  for (const bool gate : {true, false}) {
+    this->rig.set_gate(gate);
+    this->rig.run(3 * 13057);
+    EXPECT_TRUE(this->rig.phase_oe());
+    EXPECT_EQ(this->rig.servo_oe(), !gate);
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 // model shows that sleeps until its next event is compared with what it shows when it is kept awake.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <string_view>
 
@@ -20,6 +21,13 @@ inline bool engines_compared() {
 inline bool model_judged() {
   static const bool judged = comparison() == "model";
   return judged;
+}
+
+// Of all fields, whoever adds one. What lies between them may differ: equal ones are taken for others then.
+template <class Inputs>
+bool same_bytes(const Inputs& a, const Inputs& b) {
+  const auto bytes = [](const Inputs& in) { return reinterpret_cast<const unsigned char*>(&in); };
+  return std::equal(bytes(a), bytes(a) + sizeof a, bytes(b));
 }
 
 }  // namespace brick

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <memory>
 #include <sstream>
@@ -136,7 +135,7 @@ class ChannelsRig {
     if (awake_) act(*awake_);
   }
   void apply() {
-    if (awake_ && at_rest()) return;
+    if (awake_ && same_bytes(in, applied_)) return;
     advance(now_);  // edges that were left out belong to the old inputs
     if (!awake_) {
       rtl_.in = in;
@@ -146,8 +145,6 @@ class ChannelsRig {
     each([this](ServoIc& ic) { set_inputs(ic, in); });
     applied_ = in;
   }
-  // By all bytes: where those between the fields differ the model is woken for nothing.
-  bool at_rest() const { return std::memcmp(&in, &applied_, sizeof in) == 0; }
   ChannelPins judged() const { return awake_ ? channel_pins(model_) : channel_pins(rtl_); }
   void compare() {
     if (!difference.empty() || !(engines_compared() || awake_)) return;
