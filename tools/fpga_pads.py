@@ -22,7 +22,7 @@ BEHIND_TA = TICK + 0.25 * 1000 / (CPU * 16) - 3.0
 TO_PAD = 10.0  # D and /TA, from their clock
 # /RD is high for row 113 of host-bus:2.2 at least, behind gate ICs and behind the RAM, at the fastest clock up to which
 # host-bus:2.5 promises that D is off then.
-SLOW_I52, RAM_I52 = 15, 13
+SLOW_I52, RAM_I52 = 21, 13
 RD_HIGH = 2.75 * 1000 / (CPU * (SLOW_I52 + 1)) - 4.0
 RD_HIGH_RAM = 1.75 * 1000 / (CPU * (RAM_I52 + 1)) - 4.0
 RAM, STROBES = "u_dpram.", "u_bus_strobes."  # cells

@@ -275,11 +275,18 @@ static double speed_of_cubic(const struct own_path_place* place, double part, do
   const struct cubic* c = &place->cubic;
   const double square = (double)c->square, cube = (double)c->cube;
   slice_pause();
-  const double turn = part * (2.0 * square + part * 3.0 * cube);
+  const double of_cube = part * 3.0 * cube;
+  slice_pause();
+  const double both = 2.0 * square + of_cube;
+  slice_pause();
+  const double turn = part * both;
   slice_pause();
   const double slope = rate * ((double)c->linear + turn);
   slice_pause();
-  const double speed = slope / math_scale((double)place->time, -TIME_FRACTION_BITS);
+  const double time = math_scale((double)place->time, -TIME_FRACTION_BITS);
+  slice_pause();
+  const double speed = slope / time;
+  slice_pause();
   return math_absolute(speed) < STANDS_STILL ? 0.0 : speed;
 }
 

@@ -91,7 +91,8 @@ class Bench {
         accepted(port_->command(line), line);
         break;
       default:
-        for (const Tick begin = now(); rotary_->put(line) == BinaryResult::kBusy;) bus_->pause_polling(begin);
+        for (const Tick begin = now(); rotary_->put(line) == BinaryResult::kBusy;)
+          bus_->pause_polling(begin, begin + kPatience);
         break;
     }
     ++given_;

@@ -17,7 +17,7 @@ bool DpramPort::wait_free(std::uint32_t offset, std::uint16_t bits, Tick timeout
   const Tick begin = ram_.now(), limit = begin + timeout;
   while ((ram_.read(offset) & bits) != 0) {
     if (ram_.now() >= limit) return false;
-    ram_.pause(begin);
+    ram_.pause(begin, limit);
   }
   return true;
 }
@@ -64,7 +64,7 @@ std::optional<DpramPort::Response> DpramPort::take(Tick timeout) {
   const Tick begin = ram_.now(), limit = begin + timeout;
   std::optional<Response> response = look();
   while (!response && ram_.now() < limit) {
-    ram_.pause(begin);
+    ram_.pause(begin, limit);
     response = look();
   }
   if (response) ram_.write(DPRAM_RESPONSE_CONTROL, 0);

@@ -22,7 +22,7 @@ class DpramAccess {
   virtual std::uint16_t read(std::uint32_t offset) = 0;
   virtual void write(std::uint32_t offset, std::uint16_t word) = 0;
   virtual Tick now() = 0;
-  virtual void pause(Tick since) = 0;  // after a look that found nothing, of a wait since then
+  virtual void pause(Tick since, Tick limit) = 0;  // after a look that found nothing, of a wait so long
 };
 
 class BusDpram : public DpramAccess {
@@ -31,7 +31,7 @@ class BusDpram : public DpramAccess {
   std::uint16_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint16_t word) override;
   Tick now() override;
-  void pause(Tick since) override;
+  void pause(Tick since, Tick limit) override;
 
  private:
   HostBus& bus_;

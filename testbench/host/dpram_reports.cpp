@@ -56,7 +56,7 @@ bool DpramReports::begin(std::uint32_t busy, std::uint32_t ready, Tick timeout) 
       ram_.write(busy, 0);
       return false;
     }
-    ram_.pause(begin);
+    ram_.pause(begin, limit);
   }
   return true;
 }

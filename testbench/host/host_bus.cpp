@@ -100,15 +100,16 @@ void HostBus::open_port() {
 }
 
 // A short wait is lengthened by little, a long one costs few looks.
-void HostBus::pause_polling(Tick since) {
-  pause(std::clamp(tick_to_fs(now() - since) / isa::kLooksAWait, isa::kPollPause, isa::kLongestPollPause));
+void HostBus::pause_polling(Tick since, Tick limit) {
+  const TimeFs longest = std::min(isa::kLongestPollPause, tick_to_fs(std::max<Tick>(0, limit - now())));
+  pause(std::max(isa::kPollPause, std::min(tick_to_fs(now() - since) / isa::kLooksAWait, longest)));
 }
 
 bool HostBus::put_char(std::uint8_t c, Tick timeout) {
   const Tick begin = now(), limit = begin + timeout;
   while (!(port_status() & kTxde)) {
     if (now() >= limit || tripped()) return false;
-    pause_polling(begin);
+    pause_polling(begin, limit);
   }
   io_write(regs::host_io::kData7, c);
   return true;
@@ -118,7 +119,7 @@ std::optional<std::uint8_t> HostBus::get_char(Tick timeout) {
   const Tick begin = now(), limit = begin + timeout;
   while (!(port_status() & kRxdf)) {
     if (now() >= limit || tripped()) return std::nullopt;
-    pause_polling(begin);
+    pause_polling(begin, limit);
   }
   return io_read(regs::host_io::kData7);
 }

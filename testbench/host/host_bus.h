@@ -41,7 +41,7 @@ class HostBus : public IsaHost {
     const std::uint8_t status = io_read(regs::host_io::kIsr);
     return status == 0xFF ? 0 : status;
   }
-  void pause_polling(Tick since);                              // after a look that found nothing, of a wait since then
+  void pause_polling(Tick since, Tick limit);                  // after a look that found nothing, of a wait so long
   bool tripped() const { return pins().get(pin::kWdo) != 0; }  // line WDO: nobody will answer until a reset
   void open_port();                                            // once: high and middle byte zero
   bool put_char(std::uint8_t c, Tick timeout);                 // spins on TXDE; false at the time-out

@@ -32,13 +32,16 @@ void drop_texts(std::vector<FramingAnswer>& answers, std::size_t first) {
 
 // The status register is read once for both directions, so that an answer never waits behind a character to be sent.
 bool HostLink::put(std::uint8_t c, Tick deadline) {
-  const Tick begin = bus_.now();
+  Tick begin = bus_.now();
   for (;;) {
     const std::uint8_t status = bus_.port_status();
-    if (status & HostBus::kRxdf) keep(bus_.io_read(regs::host_io::kData7));
+    if (status & HostBus::kRxdf) {
+      keep(bus_.io_read(regs::host_io::kData7));
+      begin = bus_.now();
+    }
     if (status & HostBus::kTxde) break;
     if (bus_.now() >= deadline || bus_.tripped()) return false;
-    bus_.pause_polling(begin);
+    bus_.pause_polling(begin, deadline);
   }
   bus_.io_write(regs::host_io::kData7, c);
   return true;

@@ -17,7 +17,7 @@ class NativeDpram : public brick::DpramAccess {
   std::uint16_t read(std::uint32_t offset) override { return static_cast<std::uint16_t>(dpram_read(offset)); }
   void write(std::uint32_t offset, std::uint16_t word) override { dpram_write(offset, word); }
   brick::Tick now() override { return passes_; }
-  void pause(brick::Tick) override {
+  void pause(brick::Tick, brick::Tick) override {
     ++passes_;
     background(1);
   }

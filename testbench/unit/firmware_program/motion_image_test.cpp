@@ -51,8 +51,8 @@ TEST_F(MotionImage, FifteenEndlessProgramsLeaveHostWatchdogAndBlending) {
   EXPECT_EQ(board.send("&1??\r").at(7) & 2, 2) << "in position, while the others go on";
 }
 
-// As of paths: 500 cycles hold one product or division of doubles. LONGEST_SECTION of firmware/kernel/slice.c is more,
-// what the real-time task does beside the slice is in it.
+// As of paths: 500 cycles hold two or three products of doubles, or two divisions. LONGEST_SECTION of
+// firmware/kernel/slice.c is more, what the real-time task does beside the slice is in it.
 TEST_F(MotionImage, JogsPauseInTime) {
   accepted("I100=1 I124=$120001 I111=0 I122=20 I119=.1 I120=50 I121=10");
   board.run_ms(20);
@@ -61,6 +61,14 @@ TEST_F(MotionImage, JogsPauseInTime) {
     accepted(jog);
     board.run_ms(5);
   }
+  // A ramp from the cubic of a move.
+  accepted("J/");
+  board.run_ms(300);
+  store(1, {"INC LINEAR TA100 TS0 TM500 X10000"});
+  accepted("&1#1->X B1R");
+  board.run_ms(60);
+  accepted("&1A");
+  board.run_ms(5);
   std::printf("%llu between two pauses at %s\n", static_cast<unsigned long long>(own.longest()),
               own.longest_at().c_str());
   EXPECT_GE(own.points(), 1u);

@@ -1,5 +1,6 @@
 // What memories and flip-flops hold before anything writes them is random by the seed, and no reply and no time of the
 // controller depends on it. What the host reads from a DPRAM that nobody has written is the seed's, on every engine.
+#include <set>
 #include <utility>
 
 #include "testbench/unit/system/controller.h"
@@ -39,8 +40,10 @@ TEST(StartValues, ReachEveryEngineAlikeAndNoReply) {
   const Story usual = tell(Engine::kSystemC, 1);
   EXPECT_EQ(usual.unwritten, 0) << "the default";
   constexpr std::pair<Engine, std::uint64_t> kTold[]{{Engine::kSystemC, 2}, {Engine::kRtl, 3}, {Engine::kLockstep, 4}};
+  std::set<std::uint16_t> unwritten;
   for (const auto& [engine, seed] : kTold) {
     const Story model = tell(Engine::kSystemC, seed), story = tell(engine, seed);
+    EXPECT_TRUE(unwritten.insert(model.unwritten).second) << "seed " << seed;
     EXPECT_NE(model.unwritten, 0) << "seed " << seed;
     EXPECT_EQ(story.unwritten, model.unwritten) << "seed " << seed;
     EXPECT_EQ(model.replies, usual.replies) << "seed " << seed;
