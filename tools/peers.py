@@ -10,7 +10,6 @@ Exit status: 0 done, 1 a checksum differs, something cannot be built or does not
 
 import argparse
 import contextlib
-import ctypes
 import os
 import pathlib
 import shutil
@@ -28,8 +27,7 @@ PAGE = "docs/peers.md"
 COCOTB = "cocotb==1.8.1"  # the last for Verilator 5.006
 STATE_TICKS = 60
 LIMIT = 600  # s of the wall: a run takes seconds, a build minutes of a machine that is shared
-PR_SET_PDEATHSIG = 1
-LIBC = ctypes.CDLL(None)
+ENDS_WITH_US = ["setpriv", "--pdeathsig", "KILL"]
 VERILATE = ["-O3", "-fno-table", "--x-assign", "fast", "--x-initial", "fast", "-Wno-fatal", "-Wno-lint", "-Wno-style"]
 
 
@@ -44,9 +42,8 @@ class Missing(Exception):
 def run(command, limit=LIMIT, **more):
     """(standard output, seconds of the processor, those of its children included). Whatever ends us ends it too."""
     with tempfile.TemporaryFile() as said, tempfile.TemporaryFile() as wrong:
-        program = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=said, stderr=wrong,
-                                   start_new_session=True, **more,
-                                   preexec_fn=lambda: LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL))
+        program = subprocess.Popen([*ENDS_WITH_US, *map(str, command)], stdin=subprocess.DEVNULL, stdout=said,
+                                   stderr=wrong, start_new_session=True, **more)
         late = threading.Event()
 
         def kill():  # its children too
