@@ -20,15 +20,17 @@ LONGEST = 60
 
 
 def git(root, *arguments):
-    done = subprocess.run([*GIT, *arguments], cwd=root, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    done = subprocess.run([*GIT, *arguments], cwd=root, text=True, errors="replace", stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL)
     return done.stdout if done.returncode == 0 else ""
 
 
 def commits_of(root, span):
     """(hash, message, files that it changes) of each, merges apart."""
-    for commit in git(root, "log", "--no-merges", "--name-only", "--format=%x01%H%x00%B%x00", span).split("\x01")[1:]:
-        name, message, files = commit.split("\0")
-        yield name, message.strip(), files.split("\n")
+    said = git(root, "log", "-z", "--no-merges", "--name-only", "--format=%x00%x01%H%x00%B%x00", span)
+    for commit in f"\0{said}".split("\0\0\x01")[1:]:  # no message and no name of a file has a zero
+        name, message, *files = commit.split("\0")
+        yield name, message.strip(), [file.strip("\n") for file in files]
 
 
 def commit_problems(name, message, files):

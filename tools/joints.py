@@ -5,8 +5,8 @@ A comment line stands directly above an assume, and holds for those that follow 
   // guarantee: ITEM; ITEM
 An ITEM is one of
   power-on                     a run begins in reset with nothing asked for: a flag of the run's age, started_q or
-                               awake_q, || what is assumed before it is set, so that nothing is assumed later; or
-                               flag ? later : before, where another item guarantees what comes later
+                               awake_q, or its last value, || what is assumed before it is set, so that nothing is
+                               assumed later; or flag ? later : before, where another item guarantees what comes later
   one reset                    `rst_ni == started_q`: resets behind the first are not in the proof (docs/formal.md)
   choice                       the assume narrows what is `(* anyconst *)`
   PROOF R1, R2                 rules of another file of proofs, which are proved without a bound
@@ -32,7 +32,7 @@ FOLDER = "testbench/formal"
 GUARANTEE = re.compile(r"\s*// guarantee: (.+)$")
 MORE = re.compile(r"\s*//   (\S.*)$")  # a line of it that goes on
 ASSUME = re.compile(r"\bassume *\(")
-YOUNG = re.compile(r"\bassume *\((started_q|awake_q)(?: == \d+'d\d+)? (\|\|[^?]*|\?.*)\);")
+YOUNG = re.compile(r"\bassume *\((started_q|awake_q)(?: == (\d+)'d(\d+))? (\|\|[^?]*|\?.*)\);")
 ONE_RESET = re.compile(r"\bassume *\(rst_ni == started_q\);")
 RULES = re.compile(r"(\w+) ((?:R\d+)(?:, R\d+)*)(?:, a clock before: (\w+))?$")
 JUDGED = re.compile(rf"({CITATION.pattern}(?:, {CITATION.pattern})*), `([^`]+)`$")
@@ -79,13 +79,20 @@ class Joints:
         source = re.search(rf"\bassign {output} += (\w+_q);", text)
         return bool(source) and bool(re.search(rf"\b{source[1]} +<= ", text))
 
+    def is_last(self, name, flag, width, value):
+        """The value at which a counter of the run's age stays: all ones, of its own width. A flag has none."""
+        if value is None:
+            return True
+        own = re.search(rf"\blogic +\[(\d+):0\] {flag}\b", self.texts[name])
+        return int(width) == (int(own[1]) if own else 0) + 1 and int(value) == 2 ** int(width) - 1
+
     def item(self, name, assume, item, others):
         """What is wrong with an item of a guarantee, or None."""
         if item == "power-on":
             form = YOUNG.search(assume)
-            if not form:
+            if not form or "->" in assume or not self.is_last(name, *form.groups()[:3]):
                 return "power-on, but not of the form 'started_q || what is assumed before'"
-            return "power-on, but what is assumed later has no guarantee" if form[2][0] == "?" and not others else None
+            return "power-on, but what is assumed later has no guarantee" if form[4][0] == "?" and not others else None
         if item == "one reset":
             return None if ONE_RESET.search(assume) else "one reset, but not of the form 'rst_ni == started_q'"
         if item == "choice":
@@ -136,8 +143,11 @@ class Joints:
                 if not guarantee:
                     found.append(f"{where}: no guarantee: {assume}")
                 items = re.findall(r"(?:`[^`]*`|[^;`])+", guarantee)  # a list in a cover has such signs too
-                for item in map(str.strip, items):
-                    wrong = self.item(name, assume, item, len(items) > 1)
+                items = [item.strip() for item in items]
+                if len(ASSUME.findall(assume)) > 1:
+                    found.append(f"{where}: expected one assume a line: {assume}")
+                for item in items:
+                    wrong = self.item(name, assume, item, len(set(items)) > 1)
                     if wrong:
                         found.append(f"{where}: '{item}': {wrong}")
         circle = self.circle()

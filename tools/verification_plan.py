@@ -93,7 +93,8 @@ def each(names):
     def members(text):
         for member in text.split(";"):
             ends = re.fullmatch(r"(\d+)\.\.(\d+)", member.strip())
-            yield from (str(n) for n in range(int(ends[1]), int(ends[2]) + 1)) if ends else (member.strip(),)
+            numbers = range(int(ends[1]), int(ends[2]) + 1) if ends else ()
+            yield from map(str, numbers) if numbers else (member.strip(),)  # 3..1: a name that nothing counts
 
     parts = re.split(r"\{([^}]*)\}", names)  # a text, a list, a text and so on
     choices = [list(members(part)) if place % 2 else [part] for place, part in enumerate(parts)]

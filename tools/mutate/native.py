@@ -39,7 +39,7 @@ class Kind:
 
 
 CHECKED = ("-w", "-D_GLIBCXX_ASSERTIONS")  # an index outside says so
-KINDS = {"firmware": Kind(more={"BRICK_RANDOM_PATHS": "60"}),  # of 2000, which take as long as all other tests
+KINDS = {"firmware": Kind(more={"BRICK_RANDOM_PATHS": "60"}),  # of 700, to be quick
          "model": Kind(compare="model", flags=CHECKED),
          "host": Kind(flags=CHECKED)}
 
@@ -89,16 +89,18 @@ class Judge:
             places = known[file][1] if known.get(file, [""])[0] == read else self.places_in(file)
             found[file] = [read, places]
             mutants += mutants_of(file, self.sources[file], [Place(*place) for place in places], len(mutants) + 1)
-        kept.write_text(json.dumps(found))
+        new = kept.with_suffix(".new")
+        new.write_text(json.dumps(found))
+        new.replace(kept)  # a killed run leaves the old one or the new one
         return mutants
 
     def hash_of_read(self, file):
-        """Of the tree's files that the compiler reads for `file`, its options and the finders."""
+        """Of all files that the compiler reads for `file`, its options, the finders and what they parse with."""
         command = self.commands[file][0]
         target = command[command.index("-o") + 1]
         read = {path for program in self.programs.values() for path in program.read.get(target, ())}
-        own = sorted(path for path in read if path.startswith(str(self.root)))
-        return hash_of(*map(pathlib.Path, own), repr(parser_options(command)),
+        return hash_of(*map(pathlib.Path, sorted(read)), repr(parser_options(command)), c_source.own_headers(),
+                       TOOLS.parent / "requirements.txt", TOOLS / "chosen.h",
                        *(TOOLS / f"{part}.py" for part in ("c_source", "cpp_source", "schemata", "mutant")))
 
     def places_in(self, file):

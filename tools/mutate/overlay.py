@@ -82,7 +82,7 @@ class Program:
 
 def of_several(source):
     """CMake has joined files for the compiler (cmake/Headers.cmake, brick_together)."""
-    return re.fullmatch(r"unity_\d+_c(xx)?\.cx?x?", pathlib.Path(source).name) is not None
+    return pathlib.Path(source).parent.name == "Unity"
 
 
 def unjoined(source, root):

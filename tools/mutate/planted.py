@@ -120,20 +120,23 @@ def chosen(options):
 
 
 def known_of(path, inputs):
-    """{key: row} of the results of the same inputs."""
-    if not path.exists():
-        return {}
-    head, rows = records.read(path)
-    return {row["key"]: row for row in rows} if head["inputs"] == inputs else {}
+    """{key: row} of the results. A row of other inputs names them."""
+    head, rows = records.read(path) if path.exists() else ({}, [])
+    known = {}
+    for row in rows:
+        of = row.pop("inputs", head["inputs"])
+        known[row["key"]] = row if of == inputs else {**row, "inputs": of}
+    return known
 
 
 def judged(group, options):
-    """The rows of its bugs."""
+    """The rows of its bugs. Those that are not judged anew stay as they are: a miss is not forgotten."""
     path = bugs.RESULTS / f"{group.name}.jsonl"
     inputs = group.inputs()
-    known = known_of(path, inputs)
-    rows = {key: row for key, row in known.items() if key in {bug.key for bug in bugs.read()}}
-    todo = [bug for bug in group.bugs if not (options.resume and bug.key in known)]
+    keys = {bug.key for bug in bugs.read()}
+    rows = {key: row for key, row in known_of(path, inputs).items() if key in keys}
+    done = {key for key, row in rows.items() if options.resume and "inputs" not in row}
+    todo = [bug for bug in group.bugs if bug.key not in done]
     if todo:
         group.bugs = todo
         group.build()

@@ -6,7 +6,7 @@ from tree import Tree, run
 
 NEIGHBOUR = "    // R1: It stays.\n    R1: assert (a);\n"
 PROOF = """module dut_rules;
-  (* anyconst *) logic [1:0] k;
+  (* anyconst *) logic [1:0] k; logic [3:0] awake_q;
   always @(posedge clk_i) begin
     // guarantee: power-on
     assume (started_q || !rst_ni);
@@ -64,11 +64,17 @@ class Joints(Tree):
                               ("a_i || started_q && b_i", "not of the form"), ("started_q && a_i", "not of the form"),
                               ("rst_ni == started_q", "not of the form"), ("started_q != a_i", "not of the form"),
                               ("started_q || a_i ? b_i : c_i", "not of the form"),
+                              ("started_q == 1'd0 || !a_i", "not of the form"),
+                              ("awake_q == 4'd3 || !a_i", "not of the form"),
+                              ("awake_q == 2'd3 || !a_i", "not of the form"),
+                              ("started_q || a_i -> b_i", "not of the form"),
+                              ("started_q || a_i); assume (b_i", "expected one assume a line"),
                               ("started_q ? a_i : !a_i", "what is assumed later has no guarantee")):
             self.expect(self.judge(f"// guarantee: power-on\n    assume ({assume});{other}"), int(bool(wrong)),
                         wrong or "clean")
-        self.expect(self.judge(f"// guarantee: power-on; neighbour R1\n    assume (started_q ? a_i : !a_i);{other}"), 0,
-                    "clean")
+        for items, wrong in (("neighbour R1", ""), ("power-on", "what is assumed later has no guarantee")):
+            self.expect(self.judge(f"// guarantee: power-on; {items}\n    assume (started_q ? a_i : !a_i);{other}"),
+                        int(bool(wrong)), wrong or "clean")
 
     def test_one_reset_is_said_to_be_assumed(self):
         other = "\n    // guarantee: neighbour R1"

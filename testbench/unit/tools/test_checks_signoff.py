@@ -118,6 +118,7 @@ class SignOff(Tree):
 
     def test_lists_in_braces_are_a_cross(self):
         self.assertEqual(verification_plan.each("a"), ["a"])
+        self.assertEqual(verification_plan.each("t{8..1}"), ["t8..1"])  # counted never, so that it fails
         self.assertEqual(verification_plan.each("t{1..3; 5off}, {I/O; b = 2, c}!"),
                          [f"t{n}, {what}!" for n in ("1", "2", "3", "5off") for what in ("I/O", "b = 2, c")])
 

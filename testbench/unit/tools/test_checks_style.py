@@ -63,6 +63,8 @@ class Commits(Tree):
         self.expect(self.commit("a.md", "docs: a page"), 0, "1 commits: clean")
         self.expect(self.commit("a.cpp", "core: a change", "Because."), 0, "2 commits: clean")
         self.expect(self.commit("b.cpp", "core: another"), 1, "core: another: changes code and does not say why")
+        self.expect(self.commit("c d.md", "docs: a message", "\x01with odd\x01 bytes"), 1, "4 commits: 1 problem(s)")
+        self.expect(self.commit("\u00b5.cpp", "core: a file"), 1, "core: a file: changes code and does not say why")
 
     def test_a_summary_of_another_form_fails(self):
         self.git("init", "-q")

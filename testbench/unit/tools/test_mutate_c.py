@@ -6,6 +6,7 @@ import random
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 from unittest import mock
 
@@ -55,6 +56,20 @@ def found_in(folder):
     file = pathlib.Path(folder) / "work.c"
     file.write_bytes(FILE)
     return mutant.mutants_of("work.c", FILE, c_source.places(file, ["-std=c11"]))
+
+
+class Kept(unittest.TestCase):
+    def test_a_header_of_the_system_that_changes_is_parsed_anew(self):
+        with tempfile.TemporaryDirectory() as folder:
+            header = pathlib.Path(folder) / "outside.h"
+            judge = native.Judge.__new__(native.Judge)
+            judge.root, judge.commands = pathlib.Path(folder) / "tree", {"a.c": [["cc", "-c", "a.c", "-o", "a.o"]]}
+            judge.programs = {"p": types.SimpleNamespace(read={"a.o": {str(header)}})}
+            hashes = set()
+            for text in ("int a;\n", "int b;\n"):
+                header.write_text(text)
+                hashes.add(judge.hash_of_read("a.c"))
+        self.assertEqual(len(hashes), 2)
 
 
 class Places(unittest.TestCase):

@@ -6,7 +6,9 @@ import io
 import pathlib
 import sys
 import tempfile
+import types
 import unittest
+from unittest import mock
 
 TOOLS = pathlib.Path(__file__).resolve().parents[3] / "tools"
 sys.path[:0] = [str(TOOLS / "mutate"), str(TOOLS)]
@@ -19,6 +21,7 @@ except ImportError as missing:
 
 import bugs  # noqa: E402
 import enclosing  # noqa: E402
+import planted  # noqa: E402
 import records  # noqa: E402
 import schemata  # noqa: E402
 from mutant import Mutant  # noqa: E402
@@ -163,6 +166,29 @@ class Entries(unittest.TestCase):
             status, said = self.tidy(release=True, **row)
             self.assertEqual(status, 1)
             self.assertIn("no result says that Suite.FindsIt finds it", said)
+
+    def judged(self, inputs, *chosen, resume=False):
+        """The numbers that ran, all are found."""
+        ran = []
+        group = types.SimpleNamespace(name="unit_a", bugs=list(chosen), inputs=lambda: inputs, build=lambda: None,
+                                      build_seconds=0.0, judge=lambda bug: (ran.append(bug.number), (True, "x"))[1])
+        planted.judged(group, types.SimpleNamespace(resume=resume, count=None))
+        return ran
+
+    def test_a_miss_is_kept_until_it_is_judged_anew(self):
+        self.entry(BUG + BUG.replace('"a | b"', '"a"'))
+        every, results = bugs.read(self.root / "planted"), self.root / "results"
+        records.write(results / "unit_a.jsonl", {"inputs": "old"}, [
+            {"number": 1, "key": every[0].key, "found": False, "by": "its test passes"},
+            {"number": 7, "key": "of a bug that is gone", "found": False, "by": ""}])
+        with mock.patch.object(bugs, "read", lambda: every), mock.patch.object(bugs, "RESULTS", results):
+            self.assertEqual(self.judged("new", every[1]), [2])
+            missed, never = bugs.outcomes(every, results)
+            self.assertEqual((len(missed), never), (1, []))
+            self.assertEqual(self.judged("new", *every, resume=True), [1])
+            self.assertEqual(bugs.outcomes(every, results), ([], []))
+            self.assertEqual(self.judged("new", *every, resume=True), [])
+        self.assertEqual(len(records.read(results / "unit_a.jsonl")[1]), 2)
 
     def test_what_no_longer_applies_fails(self):
         for text in ("assign r = a ^ b;\n", "assign r = a & b | a & b;\n"):
