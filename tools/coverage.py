@@ -177,9 +177,9 @@ def page(tests, of_modules, of_folders):
 
 {ran}
 
-Every module and model has a row (`docs.coverage`); the figures are those of that commit. They say what no test runs.
-They do not say that what is run is checked: for that are the negative controls and planted misreadings
-([verification plan]({PLAN.removeprefix('docs/')})).
+`docs.coverage` names each module, model and folder that has no row; the plan `release` fails on one. The figures are
+those of that commit. They say what no test runs. They do not say that what is run is checked: for that are the negative
+controls and planted misreadings ([verification plan]({PLAN.removeprefix('docs/')})).
 
 ## RTL and models
 

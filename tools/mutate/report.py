@@ -42,12 +42,12 @@ one process it counts when that test fails alone, too (seen of all rows but the 
 - **slip**: with lock-step and component tests on what was left: a mistake in one engine alone.
 - **equal**: proved, without a bound, to be the module it was made from; of C and C++, the same object code at -O2; out
   of the count, another takes its place.
-- **outside**: ended by its limit of processor time, or a crash without a report that names its place; out of the count
-  too.
+- **outside**: ended by its limit of processor time, a crash without a report that names its place, or no image can be
+  built of it; out of the count too.
 - **at least**: the lower end of what the score of all mutants of the module may be, at 95 % (Wilson's interval, one
   side), from those drawn; the score itself where all were judged. It holds of mutants that no test was written for:
-  where tests followed on survivors of the draw (firmware, all folders) the score is of the draw, and a seed that is new
-  says less. *Together* each module weighs by its mutants.
+  where tests followed on survivors of the draw (firmware, all folders; model `host`) the score is of the draw, and a
+  seed that is new says less. *Together* each module weighs by its mutants.
 - **stale**, at the commit: the file has changed since it was judged.
 
 Not mutated: what is fixed before it runs (widths, parameters, generate blocks, sensitivity lists; initial values of

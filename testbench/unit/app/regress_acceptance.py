@@ -230,8 +230,10 @@ def regress_resume():
     check(all(int(name.split("-")[1]) > 30 for name in before), "a usual seed is none that is fresh")
 
 
-# Says when it begins and ends; each line is written in one piece.
-NOTED = ('command = ["sh", "-c", "echo {seed} begins >> {plan}/log; sleep 0.6; echo {seed} ends >> {plan}/log"]\n')
+# Says when it begins and ends; each line is written in one piece. Between, it waits for something, not for ever.
+NOTED = ('command = ["sh", "-c", "echo {{seed}} begins >> {{plan}}/log; for i in $(seq 100); do {until} && break; '
+         'sleep 0.1; done; echo {{seed}} ends >> {{plan}}/log"]\n')
+A_WHILE, BOTH = "[ $i -gt 6 ]", "[ $(grep -c '^[34] begins' {plan}/log) = 2 ]"
 
 
 def crowds(log):
@@ -248,11 +250,12 @@ def crowds(log):
     return beside
 
 
-def some_alone(*options):
-    """A folder with the results of a plan whose runs 1, 2 and 5 have nothing beside them. On a cluster two of them fill
-    a task."""
-    folder = Folder("".join(f'[[row]]\nname = "n"\n{NOTED}seeds = {seeds}\nalone = {alone}\n' for seeds, alone in (
-        ("[1, 2]", "true"), ("[3, 4]", "false"), ("5", "true"))))
+def some_alone(until, *options):
+    """A folder with the results of a plan whose runs 1, 2 and 5 have nothing beside them; 3 and 4 go on `until`. On a
+    cluster two of them fill a task."""
+    folder = Folder("".join(f'[[row]]\nname = "n"\n{NOTED.format(until=until)}seeds = {seeds}\nalone = {alone}\n'
+                            for seeds, until, alone in (("[1, 2]", A_WHILE, "true"), ("[3, 4]", until, "false"),
+                                                        ("5", A_WHILE, "true"))))
     r = folder.regress("--jobs", "3", *options)
     check(r.returncode == 0, f"{r}")
     beside = crowds(folder.path / "log")
@@ -263,7 +266,7 @@ def some_alone(*options):
 
 def regress_alone():
     """What is to run alone has nothing beside it, whatever comes before and after; the others run together."""
-    folder, beside = some_alone()
+    folder, beside = some_alone(BOTH)
     check(beside["3"] == {"4"}, f"one at a time: {beside}")
     folder.write(folder.plan.read_text() + '[[row]]\nname = "late"\ncommand = ["true"]\nalone = "yes"\n')
     r = folder.regress()
@@ -495,7 +498,7 @@ def regress_slurm():
         r = folder.regress("--resume", *on_cluster)
         check(alike(folder.report()) == here, f"after a kill: {r}")
         check(not slurm.said("squeue", "--noheader"), "the array of the call that was killed still works")
-        some_alone("--slurm", "--task-seconds", "1")
+        some_alone(A_WHILE, "--slurm", "--task-seconds", "1")
         os.environ["PATH"] = ""
         r = folder.regress("--slurm")
         check(r.returncode == 2 and "sbatch: " in r.stderr and "expected a cluster" in r.stderr, f"no cluster: {r}")

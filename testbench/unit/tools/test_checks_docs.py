@@ -1,8 +1,12 @@
 """Negative controls of the checks of pages, citations and figures: each rule is broken in a small tree."""
 
 import hashlib
+import sys
 
-from tree import Tree, run
+from tree import TOOLS, Tree, run
+
+sys.path.insert(0, str(TOOLS))
+import check_citations
 
 
 class Links(Tree):
@@ -115,6 +119,22 @@ class Citations(Tree):
         self.fails("off (5.11)", "'(5.11)' names no sheet")
         self.fails("5.1 item 2", "'5.1 item' names no sheet")
         self.fails("../shared/spec", "'../shared/spec' lies outside the tree")
+
+    def test_no_line_that_a_pattern_matches_is_passed_over(self):
+        """HINT: a line of each alternative, with nothing else in it."""
+        patterns = [pattern for pattern, _ in check_citations.LEFTOVERS]
+        lines = ("servo-ic:5-6", "Firmware 5.1", "HOST_BUS:5.1", "motion:5 rule 2", "motion:5, /2",
+                 "a/shared", "a.md 5", "see sections 7", "Section 7", "§5", "data sheets, 5", "Data sheet 5", "Spec 5",
+                 "spec 5", "as in 5.1", "5.1 rule", "of (5.1, 5.2)")
+        masked = [check_citations.CITATION.sub(lambda match: "x" * len(match[0]), line) for line in lines]
+        for line, rest in zip(lines, masked, strict=True):
+            self.assertTrue(any(pattern.search(rest) for pattern in patterns), line)
+            self.assertRegex(line, check_citations.HINT)
+        for pattern in patterns:
+            self.assertTrue(any(pattern.search(rest) for rest in masked), pattern.pattern)
+        for line in ("a.md", "docs/a.txt", "docs/a.json", "docs/a.svg", "docs/a.png"):
+            self.assertRegex(line, check_citations.PAGE_NAME)
+            self.assertRegex(line, check_citations.HINT)
 
     def test_a_vector_without_citations_fails(self):
         self.write("testbench/vectors/a.vec", 'section = "5.1"\n')

@@ -122,6 +122,8 @@ class ClockCrossings(Tree):
                       "servo_ic_chip: number_i reaches u_bus_read.data_q (data)",
                       "isa_aen_i reaches pa_data_oe_o (output)"):  # no row allows it
             self.expect(done, 1, named)
+        *listed, count = done.stdout.splitlines()
+        self.assertEqual(count.split(": ")[1], f"{len(listed)} problem(s)")
 
     def test_logic_that_looks_at_the_first_flip_flop_fails(self):
         self.plant("rtl/common/sync2.sv", "q_o = sync2_q", "q_o = sync1_q")
