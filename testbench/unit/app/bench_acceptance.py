@@ -1,8 +1,9 @@
 """Every bench through the built command: it passes on its engines and seeds, and fails its negative control. A bench
 that runs in lock-step does not run on the RTL alone as well: there the RTL and the model get the same inputs, are equal
 at every tick, and the bench judges what they show; the RTL alone has `smoke` and the tests of the whole controller. In
-lock-step here: what shows each block of the hardware, a servo loop and a path; the plan `night` has all others so too,
-and more seeds of each. usage: bench_acceptance.py BRICK CASE; each CASE is one test."""
+lock-step here: what shows a block of the hardware, a servo loop and a path; the MACRO IC and the panel have it in
+unit_system. The plan `night` has all others so too, and more seeds of each. usage: bench_acceptance.py BRICK CASE; each
+CASE is one test."""
 import fnmatch
 import json
 import pathlib
