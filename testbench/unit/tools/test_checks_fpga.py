@@ -169,7 +169,7 @@ class Pads(unittest.TestCase):
         of_ram, of_registers = (row for row in fpga_pads.rows(found) if row.rule == AGAIN)
         to_pad = 0.24 + 0.1 + 0.24 + 0.7
         self.assertAlmostEqual(of_registers.has, 1.0 + 0.4 + 2.0 + to_pad)
-        self.assertAlmostEqual(of_registers.limit, 2.75 * 1000 / 9.8304 / 16 - 4)  # I52 = 15
+        self.assertAlmostEqual(of_registers.limit, 2.75 * 1000 / 9.8304 / 22 - 4)  # I52 = 21
         self.assertAlmostEqual(of_ram.has, 1.0 + 0.4 + 3.0 + to_pad)
         self.assertAlmostEqual(of_ram.limit, 1.75 * 1000 / 9.8304 / 14 - 4)  # I52 = 13
 
