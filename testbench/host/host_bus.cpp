@@ -101,8 +101,9 @@ void HostBus::open_port() {
 
 // A short wait is lengthened by little, a long one costs few looks.
 void HostBus::pause_polling(Tick since, Tick limit) {
-  const TimeFs longest = std::min(isa::kLongestPollPause, tick_to_fs(std::max<Tick>(0, limit - now())));
-  pause(std::max(isa::kPollPause, std::min(tick_to_fs(now() - since) / isa::kLooksAWait, longest)));
+  const Tick longest =
+      std::clamp<Tick>(limit - now(), 0, fs_to_tick(isa::kLongestPollPause));  // a limit may be far off
+  pause(std::max(isa::kPollPause, tick_to_fs(std::min((now() - since) / isa::kLooksAWait, longest))));
 }
 
 bool HostBus::put_char(std::uint8_t c, Tick timeout) {
