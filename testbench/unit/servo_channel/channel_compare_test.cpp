@@ -58,7 +58,7 @@ TEST_F(ChannelCompareTest, AWriteBeatsAMoveAtTheSameEdge) {
     const Tick start = rig_.now();
     const bool before = bool{equ(1)};
     step(1, true, 0);
-    while (bool{equ(1)} == before) rig_.tick();
+    wait_until([&] { return bool{equ(1)} != before; });
     const Tick count = rig_.now() - start;
     for (const Tick edge : {count - kTicksPerRef, count, count + kTicksPerRef}) {
       prepare();

@@ -156,7 +156,7 @@ TEST_F(ChannelDecodeTest, AnErrorAtTheEdgeOfItsClearIsNotLost) {
   };
   both_lines();
   const Tick start = rig_.now();
-  while (!status(1, status_bit::kEncoderError)) rig_.tick();
+  wait_until([&] { return status(1, status_bit::kEncoderError); });
   const Tick error = rig_.now() - start;
   ASSERT_EQ(error % kTicksPerRef, 0);
   for (const Tick clear : {error - kTicksPerRef, error, error + kTicksPerRef}) {

@@ -14,8 +14,8 @@ class ChannelDividerTest : public ChannelTest {
   void divide(const regs::Field& clock, unsigned n) { rig_.write(ic_words::kClockControl, clock.set(kWithout, n)); }
   // T2 as the next fall of SERVO latches it, and when that was.
   std::uint32_t latch(Tick& at) {
-    while (!rig_.pins().servo) rig_.tick();
-    while (rig_.pins().servo) rig_.tick();
+    wait_until([&] { return rig_.pins().servo; });
+    wait_until([&] { return !rig_.pins().servo; });
     at = rig_.now();
     rig_.ref(3);
     return rig_.peek(1, words::kTimer2);
@@ -64,7 +64,7 @@ TEST_F(ChannelDividerTest, EachNumberOfPfmClkTimesPulses) {
     rig_.ticks(2 * period(7));
     pulse_rises();
     const Tick rise = pulse_rises();
-    while (rig_.other(kPulse, 1)) rig_.tick();
+    wait_until([&] { return !rig_.other(kPulse, 1); });
     EXPECT_EQ(rig_.now() - rise, period(n)) << "n " << n;
     EXPECT_EQ(pulse_rises() - rise, 4 * period(n)) << "n " << n;
   }

@@ -173,8 +173,8 @@ TEST_F(ChannelTest, MldtTimesTheEchoOfTheOwnPulse) {
   const Tick echo[2] = {300, 450};  // SCLK from the pulse to the echo
   control(1, decode_mode(regs::decode::kMldt) | kPfm);
   for (int i = 0; i < 2; ++i) {
-    while (rig_.other(kPulse, 1)) rig_.tick();
-    while (!rig_.other(kPulse, 1)) rig_.tick();
+    wait_until([&] { return !rig_.other(kPulse, 1); });
+    wait_until([&] { return rig_.other(kPulse, 1); });
     rig_.ticks(echo[i] * kSclk);
     pin(1, kA, true);
     pin(1, kA, false, 3 * kPhase);

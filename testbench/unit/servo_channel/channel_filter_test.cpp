@@ -105,6 +105,27 @@ TEST_F(ChannelFilterTest, NothingCountsBeforeTheSixthSclkAfterReset) {
   EXPECT_EQ(*counting.begin(), 6) << "the first one that does";
 }
 
+// Whatever was sampled before a reset is forgotten: a level that stands needs its two samples once more.
+TEST_F(ChannelFilterTest, AResetEmptiesTheFilter) {
+  constexpr unsigned kAll = (1u << kChannelPins) - 1;
+  const auto levels = [&] { return rig_.peek(1, words::kStatus) >> 12 & kAll; };
+  for (const bool before : {false, true}) {
+    SCOPED_TRACE(before);
+    rig_.in.pins.fill(before ? kAll : 0);
+    rig_.ticks(kHold);
+    ASSERT_EQ(levels(), before ? kAll : 0);
+    rig_.in.pins.fill(kAll);
+    rig_.reset();
+    for (Tick tick = 1; tick <= kSclk; ++tick) {
+      EXPECT_EQ(levels(), 0u) << tick << " ticks after the reset, one sample at most";
+      rig_.tick();
+    }
+    EXPECT_EQ(levels(), 0u);
+    rig_.ticks(2 * kSclk);
+    EXPECT_EQ(levels(), kAll) << "two samples behind the two flip-flops";
+  }
+}
+
 TEST_F(ChannelFilterTest, LevelsFoundByAResetAreNoLossOfTheEncoder) {
   rig_.in.pins.fill(1u << kT | 1u << kV);  // the empty filter shows the pairs equal
   rig_.reset();

@@ -40,6 +40,16 @@ class ChannelTest : public ::testing::Test {
   void steps(unsigned channel, int n, bool up, Tick hold = kHold) {
     while (n-- > 0) step(channel, up, hold);
   }
+  // Until the condition holds, one tick at a time; a failure where it takes longer than any period of these tests.
+  template <class Condition>
+  void wait_until(Condition condition) {
+    constexpr Tick kLongest = 100'000;
+    const Tick end = rig_.now() + kLongest;
+    while (!condition()) {
+      if (rig_.now() >= end) FAIL() << "it does not come about within " << kLongest << " ticks";
+      rig_.tick();
+    }
+  }
   // Signed counter, through the phase latch.
   int counter(unsigned channel) {
     rig_.ticks(kHold + 2 * kPhase);

@@ -153,7 +153,7 @@ TEST_F(ChannelIndexTest, CaptureAtTheEdgeOfTheSampleWins) {
   prepare(0);
   const Tick start = rig_.now();
   rig_.pin(1, kHmfl, true);
-  while (!status(1, status_bit::kCaptured)) rig_.tick();
+  wait_until([&] { return status(1, status_bit::kCaptured); });
   const Tick capture = rig_.now() - start;
   ASSERT_EQ(capture % kTicksPerRef, 0);
 

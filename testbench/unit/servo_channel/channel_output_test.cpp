@@ -72,9 +72,8 @@ TEST_F(ChannelTest, InversionTurnsBothSwitchesRound) {
 TEST_F(ChannelTest, PwmCommandIsUsedFromTheTurnaroundOn) {
   rig_.write(ic_words::kPwmControl, pwm_control(6527, 0));
   rig_.ticks(3 * 13057);
-  while (rig_.pins().phase) rig_.tick();
-  while (!rig_.pins().phase)
-    rig_.tick();  // a turnaround; the level of command 0 changes half way to the next, 6528 ticks on
+  wait_until([&] { return !rig_.pins().phase; });
+  wait_until([&] { return rig_.pins().phase; });  // a turnaround; command 0's level changes half way to the next
   const Tick turn = rig_.now();
   const bool level = rig_.pwm(1, kTopA);
   rig_.ticks(2000);
@@ -94,12 +93,12 @@ TEST_F(ChannelTest, PfmRateAndWidth) {
   control(2, kPfm);
   rig_.write(2, words::kOutC, 0x010000);
   auto rise = [&] {
-    while (rig_.other(kPulse, 2)) rig_.tick();
-    while (!rig_.other(kPulse, 2)) rig_.tick();
+    wait_until([&] { return !rig_.other(kPulse, 2); });
+    wait_until([&] { return rig_.other(kPulse, 2); });
     return rig_.now();
   };
   const Tick first = rise();
-  while (rig_.other(kPulse, 2)) rig_.tick();
+  wait_until([&] { return !rig_.other(kPulse, 2); });
   EXPECT_EQ(rig_.now() - first, 15 * 12) << "I7m04 PFM_CLK wide";
   EXPECT_EQ(rise() - first, 256 * 12) << "38.4 kHz";
   EXPECT_FALSE(rig_.other(kDir, 2));
@@ -137,8 +136,8 @@ class ChannelSerialTest : public ChannelTest {
     rig_.ticks(2 * 13057);
   }
   void wait_for_phase(bool level) {
-    while (rig_.pins().phase == level) rig_.tick();
-    while (rig_.pins().phase != level) rig_.tick();
+    wait_until([&] { return rig_.pins().phase != level; });
+    wait_until([&] { return rig_.pins().phase == level; });
   }
   // Levels of a pin at the 24 rising edges of a serial clock after PHASE rises.
   template <class Level>

@@ -148,10 +148,10 @@ TEST_F(ChannelPulseTest, DirectionChangesWithTheLeadingEdgeOfThePulse) {
     edge_of([&] { return !pulse(); });
     const bool before = rig_.other(kDir, 1);
     out_c(command);
-    while (!pulse()) {
-      ASSERT_EQ(rig_.other(kDir, 1), before);
-      rig_.tick();
-    }
+    wait_until([&] {
+      if (!pulse()) { EXPECT_EQ(rig_.other(kDir, 1), before); }
+      return pulse();
+    });
     EXPECT_EQ(rig_.other(kDir, 1), command < 0);
   }
 }

@@ -152,8 +152,8 @@ TEST_F(ChannelTripTest, StrobesKeepTheirWords) {
   EXPECT_EQ(rig_.peek(true, ic_words::kDacStrobe.address), ic_words::kDacStrobe.reset);
   rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
   rig_.ticks(2 * 13057);
-  while (rig_.pins().phase) rig_.tick();
-  while (!rig_.pins().phase) rig_.tick();
+  wait_until([&] { return !rig_.pins().phase; });
+  wait_until([&] { return rig_.pins().phase; });
   std::uint32_t sent = 0;
   int bits = 0;
   bool last = false;
