@@ -35,7 +35,8 @@ BoardTraffic::BoardTraffic(std::uint64_t seed, Options options) : random_(seed),
   inputs_.ssi_kind = static_cast<std::uint8_t>(ssi_random_() % 4);
   for (unsigned line = 0; line < 3; ++line)
     inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | (pick(8) == 0 ? 0 : 1 + pick(15)));
-  inputs_.line_select = static_cast<std::uint16_t>((inputs_.line_select & ~0xF) | (1 + pick(8)));  // IR5 moves: an EQU
+  const unsigned ir5 = inputs_.line_select & 0xF;  // moves in every life: an EQU
+  inputs_.line_select = static_cast<std::uint16_t>((inputs_.line_select & ~0xF) | (1 + (ir5 + 7) % 8));
   inputs_.jpan_fitted = pick(2) != 0;
   inputs_.dpram_small = pick(2) != 0;
   for (unsigned ic = 0; ic < regs::kGateIcs.size(); ++ic)

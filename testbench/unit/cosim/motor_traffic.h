@@ -65,7 +65,6 @@ class MotorTraffic {
   void write_at(std::uint32_t address, bool x, std::uint32_t word);
   void read_at(std::uint32_t address, bool x);
   std::uint32_t clock_word(bool drives);
-  std::uint32_t first_clock_word(bool front);
   std::uint32_t pwm_word();
   void control(Ic& ic, unsigned channel, bool in_use);
   std::uint32_t output_word();
