@@ -13,6 +13,7 @@ namespace {
 constexpr unsigned kOutA = 2, kCapture = 3, kGlobal = 4, kControl = 5, kIncrement = 6, kCompare = 7;
 constexpr unsigned kDacStrobe = 0x0C, kAdcStrobe = 0x14, kPwm = 0x1C;
 constexpr unsigned kTrippedAccesses = 60;
+constexpr Tick kAwake = 10;                     // from the release of the reset to the first access
 constexpr Tick kTripTime = 3'000'000;           // without a strobe the watchdog trips after 25 ms = 2949120 ticks
 constexpr std::uint32_t kOwnClocks = 0x3008D2;  // as after a reset, PHASE and SERVO driven
 constexpr std::uint32_t kInputs = 0x3000;       // in the clock word: PHASE and SERVO are inputs
@@ -35,7 +36,7 @@ MotorTraffic::MotorTraffic(std::uint64_t seed, MotorTrafficOptions options) : ra
   for (unsigned line = 0; line < 3; ++line)
     inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | (1 + below(8)));
   reset_at_ = 12 + below(30);  // released there
-  bus_at_ = reset_at_ + 10;
+  bus_at_ = reset_at_ + kAwake;
 }
 
 void MotorTraffic::run(Board& board, Tick end, Tick batch) {
@@ -48,6 +49,7 @@ void MotorTraffic::run(Board& board, Tick end, Tick batch) {
       inputs_.rst_n = !inputs_.rst_n;
       if (!inputs_.rst_n) inputs_.pwr_good = true;
       started_ = 0;
+      if (inputs_.rst_n) awake_at_ = target + kAwake;
       reset_at_ = inputs_.rst_n ? kNever : target + 1 + below(60);
     }
     if (bus_at_ == target) bus_step();
@@ -88,6 +90,11 @@ void MotorTraffic::move(Channel& c, std::uint16_t& pins) {
 void MotorTraffic::bus_step() {
   switch (bus_step_++) {
     case 0:
+      if (bus_at_ < awake_at_) {  // or the first word after the reset, which is the clocks', would be lost
+        bus_at_ = awake_at_;
+        bus_step_ = 0;
+        break;
+      }
       ++accesses_;
       if (tripped_accesses_ % 5 == 1) {
         control(ics_[below(static_cast<std::uint32_t>(ics_.size()))], below(kChannels), one_in(2));

@@ -74,7 +74,7 @@ class MotorTraffic {
   std::vector<Ic> ics_;
   std::vector<std::uint32_t> macro_ics_;  // addresses
   BoardInputs inputs_;
-  Tick bus_at_, reset_at_;
+  Tick bus_at_, reset_at_, awake_at_ = 0;
   unsigned bus_step_ = 0, started_ = 0;
   unsigned accesses_ = 0, writes_tripped_ = 0, tripped_accesses_ = 0;  // the last: still to be made before the reset
   bool writing_ = false;
