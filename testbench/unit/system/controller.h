@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <initializer_list>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -91,6 +93,22 @@ class Controller : public ::testing::TestWithParam<Engine> {
   std::unique_ptr<HostLink> link_;
 };
 
-#define BRICK_ON_ENGINES(suite, ...) INSTANTIATE_TEST_SUITE_P(, suite, ::testing::Values(__VA_ARGS__), engine_name)
+// An engine of BRICK_ON_ENGINES. at_night: with BRICK_NIGHT in the environment only (plans/night.toml).
+struct OnEngine {
+  OnEngine(Engine e, bool night = false) : engine(e), at_night(night) {}
+  Engine engine;
+  bool at_night;
+};
+inline OnEngine at_night(Engine engine) { return {engine, true}; }
+
+inline std::vector<Engine> engines(std::initializer_list<OnEngine> all) {
+  std::vector<Engine> chosen;
+  for (const OnEngine& one : all)
+    if (!one.at_night || std::getenv("BRICK_NIGHT") != nullptr) chosen.push_back(one.engine);
+  return chosen;
+}
+
+#define BRICK_ON_ENGINES(suite, ...) \
+  INSTANTIATE_TEST_SUITE_P(, suite, ::testing::ValuesIn(engines({__VA_ARGS__})), engine_name)
 
 }  // namespace brick

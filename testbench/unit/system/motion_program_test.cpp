@@ -69,7 +69,7 @@ TEST_P(MotionPrograms, RunTimeErrorAndWhatRunRefuses) {
   EXPECT_EQ(ask("B2R"), "ERR015");
 }
 
-BRICK_ON_ENGINES(MotionPrograms, Engine::kSystemC, Engine::kLockstep);
+BRICK_ON_ENGINES(MotionPrograms, Engine::kSystemC, at_night(Engine::kLockstep));
 
 }  // namespace
 }  // namespace brick

@@ -22,7 +22,7 @@ enum class Fault { kNone, kLost, kDoubled, kSwapped };
 class StreamOn : public Controller {
  protected:
   // BRICK_STREAM_LINES: lines of each stream.
-  long lines(long on_systemc = 2000, long in_lockstep = 100) const {
+  long lines(long on_systemc = 2000, long in_lockstep = 50) const {
     const char* wanted = std::getenv("BRICK_STREAM_LINES");
     if (wanted != nullptr) return std::strtol(wanted, nullptr, 10);
     return GetParam() == Engine::kSystemC ? on_systemc : in_lockstep;
@@ -251,7 +251,7 @@ TEST_P(StreamOn, FixedBuffersKeepAndExecuteEachLineInOrder) {
     ASSERT_EQ(ask("P1=0 OPEN PROG " + program + " CLEAR"), "");
     std::vector<long> sent;
     std::string listing;
-    for (unsigned i = 0; i < kBlock; ++i, ++number_) {
+    for (unsigned i = 0; i < std::min<long>(kBlock, lines()); ++i, ++number_) {
       sent.push_back(number_);
       listing += (listing.empty() ? "" : "|") + text(1, number_);
       ASSERT_EQ(ask(text(1, number_)), "");
