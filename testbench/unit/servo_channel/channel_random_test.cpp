@@ -3,7 +3,10 @@
 // written word each.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <random>
+#include <vector>
 
 #include "testbench/unit/random_seed.h"
 #include "testbench/unit/servo_channel/channels_rig.h"
@@ -32,8 +35,12 @@ class Stimulus {
       if (chance(50)) rig_.in.adc_a = value(15);
       if (chance(50)) rig_.in.adc_b = value(15);
       rig_.tick();
+      if (each_tick) each_tick();
     }
   }
+
+  std::function<void()> each_tick;
+  std::uint32_t peeked = 0;  // the last word that was looked at
 
  private:
   std::uint32_t between(std::uint32_t low, std::uint32_t high) {
@@ -121,7 +128,7 @@ class Stimulus {
         rig_.write(chance(2), chance(2) ? value(31) & ~4u : at + 6, value(0xFFFFFF));
         break;
       default:
-        rig_.peek(chance(2), value(31));
+        peeked = rig_.peek(chance(2), value(31));
         break;
     }
   }
@@ -201,6 +208,39 @@ INSTANTIATE_TEST_SUITE_P(
                       Distortion{"DeadTime", ic_words::kPwmControl, pwm_control(0, 1)},
                       Distortion{"MaxCount", ic_words::kPwmControl, pwm_control(1, 0)}),
     [](const auto& word) { return std::string(word.param.name); });
+
+// Behind a reset the IC lives as it did behind the first one, whatever it did in between.
+TEST(ServoChannelReset, ForgetsAllThatWas) {
+  constexpr Tick kLife = 100'000;
+  struct Shown {
+    ChannelPins pins;
+    std::uint32_t word;
+    bool operator==(const Shown& o) const { return pins == o.pins && word == o.word; }
+  };
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    ChannelsRig rig;
+    const auto life = [&](std::uint32_t number) {
+      std::vector<Shown> shown;
+      rig.in = ServoIcInputs();
+      rig.ref();
+      Stimulus stimulus(rig, number);
+      stimulus.each_tick = [&] { shown.push_back({rig.pins(), stimulus.peeked}); };
+      stimulus.run(kLife);
+      return shown;
+    };
+    const std::uint32_t number = random_seed(seed);
+    const std::vector<Shown> first = life(number);
+    life(~number);
+    const std::vector<Shown> again = life(number);
+    ASSERT_EQ(first.size(), again.size()) << "seed " << number;
+    const auto differ = std::mismatch(first.begin(), first.end(), again.begin()).first;
+    EXPECT_TRUE(differ == first.end()) << "seed " << number << ", " << differ - first.begin() << " steps on";
+    unsigned changes = 0;
+    for (std::size_t i = 1; i < first.size(); ++i) changes += !(first[i] == first[i - 1]);
+    EXPECT_GE(changes, 1000u) << "seed " << number;
+    EXPECT_EQ(rig.difference, "");
+  }
+}
 
 // Large jumps of the model alone end where single ticks end.
 TEST(ServoChannelModel, JumpsAndSingleTicksEndInTheSameState) {
