@@ -154,7 +154,7 @@ class SurvivalOn : public Controller {
 // In the default settings (even seeds), or in others by chance. BRICK_RANDOM_LINES: lines of each seed.
 TEST_P(SurvivalOn, RandomLines) {
   const char* wanted = std::getenv("BRICK_RANDOM_LINES");
-  const long lines = wanted != nullptr ? std::strtol(wanted, nullptr, 10) : 2500;
+  const long lines = wanted != nullptr ? std::strtol(wanted, nullptr, 10) : 1000;
   long answered = 0, errors = 0, counted = 0;  // in the default settings: others may turn the acknowledge off
   std::vector<unsigned> seeds = {11, 12, 13, 14};
   for (unsigned& seed : seeds) seed = random_seed(seed);
