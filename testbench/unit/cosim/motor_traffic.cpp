@@ -150,7 +150,7 @@ bool MotorTraffic::start_access() {
   else if (!options_.moving_clocks)
     write(ic, true, kGlobal, &ic == &ics_.front() ? kOwnClocks : kOwnClocks | kInputs);
   else if (step % 2 == 0)
-    write(ic, true, kGlobal, options_.macro_drives ? clock_word(false) | kInputs : clock_word(&ic == &ics_.front()));
+    write(ic, true, kGlobal, first_clock_word(ic));
   else if (step == 1 && options_.macro_drives)
     write_at(macro_ics_.front() + regs::macro_ic::kClockControl.address, true, clock_word(true) & ~kInputs);
   else if (step == 3 && options_.macro_drives)
@@ -165,6 +165,13 @@ std::uint32_t MotorTraffic::clock_word(bool drives) {
   const std::uint32_t dividers = one_in(3) ? below(4096) : below(4) | below(4) << 3 | below(3) << 6 | below(3) << 9;
   const std::uint32_t external = one_in(20) ? below(4) : (drives ? 0 : 3);
   return dividers | external << 12 | below(3) << 16 | below(4) << 20;
+}
+
+// The lowest one drives them for certain, or the first MACRO IC does and none else.
+std::uint32_t MotorTraffic::first_clock_word(const Ic& ic) {
+  const bool lowest = &ic == &ics_.front() && !options_.macro_drives;
+  const std::uint32_t word = clock_word(lowest);
+  return lowest ? word & ~kInputs : options_.macro_drives ? word | kInputs : word;
 }
 
 std::uint32_t MotorTraffic::pwm_word() {

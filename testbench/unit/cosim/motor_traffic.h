@@ -65,6 +65,7 @@ class MotorTraffic {
   void write_at(std::uint32_t address, bool x, std::uint32_t word);
   void read_at(std::uint32_t address, bool x);
   std::uint32_t clock_word(bool drives);
+  std::uint32_t first_clock_word(const Ic& ic);
   std::uint32_t pwm_word();
   void control(Ic& ic, unsigned channel, bool in_use);
   std::uint32_t output_word();

@@ -130,6 +130,7 @@ TEST_F(ChannelTest, PfmRateIsLimitedToAQuarterOfItsClock) {
 class ChannelSerialTest : public ChannelTest {
  protected:
   static constexpr unsigned kDacClk = 1, kDacStrobe = 2, kAdcClk = 4, kAdcStrobe = 8;
+  static constexpr Tick kPeriod = 13'057;  // of PHASE
   void SetUp() override {
     ChannelTest::SetUp();
     rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
@@ -329,17 +330,22 @@ TEST_F(ChannelSerialTest, AdcKeepsEighteenBitsAfterTheHeader) {
     wait_for_phase(true);
     unsigned bit = 0;
     bool last = false;
+    const std::uint32_t before = rig_.peek(ch, words::kAdcA);
     // The converter shifts on the falling edge, so the next bit stands ready when the clock rises.
-    while (rig_.pins().phase) {
+    for (const Tick end = rig_.now() + kPeriod; rig_.pins().phase && rig_.now() < end;) {
       const auto level = [&](std::uint32_t word) { return bit < 4 || bit > 21 ? bit % 2 : word >> (21 - bit) & 1; };
       rig_.in.adc_a = level(a) << (ch - 1);
       rig_.in.adc_b = level(b) << (ch - 1);
       rig_.tick();
       const bool now = (rig_.pins().serial & kAdcClk) != 0;
-      if (last && !now) ++bit;
+      if (last && !now) {
+        ++bit;
+        EXPECT_EQ(rig_.peek(ch, words::kAdcA), before) << "until PHASE falls, bit " << bit;
+      }
       last = now;
     }
     EXPECT_EQ(bit, 24u);
+    EXPECT_NE(before, a << 6);
     rig_.ref(2);
     EXPECT_EQ(rig_.peek(ch, words::kAdcA), a << 6) << "channel " << ch;
     EXPECT_EQ(rig_.peek(ch, words::kAdcB), b << 6) << "channel " << ch;
@@ -357,7 +363,7 @@ TEST_F(ChannelSerialTest, AdcTakesItsLineAtOneEdgeOfEachBit) {
     const Tick bit = 3 << n;
     Tick first = kNever;  // edge that takes the first bit, which is dropped
     bool last = false;
-    while (rig_.pins().phase) {
+    for (const Tick end = rig_.now() + kPeriod; rig_.pins().phase && rig_.now() < end;) {
       const Tick behind = first == kNever ? 1 : rig_.now() + 1 - first, place = behind / bit;
       const auto level = [&](std::uint32_t word) {
         const std::uint32_t right = place < 4 || place > 21 ? 0 : word >> (21 - place) & 1;

@@ -157,7 +157,7 @@ TEST_F(ChannelTripTest, StrobesKeepTheirWords) {
   std::uint32_t sent = 0;
   int bits = 0;
   bool last = false;
-  while (rig_.pins().phase) {
+  for (const Tick end = rig_.now() + 13'057; rig_.pins().phase && rig_.now() < end;) {  // a period of PHASE
     rig_.tick();
     const bool clock = (rig_.pins().serial & 4) != 0;
     if (clock && !last) {

@@ -100,11 +100,12 @@ struct OnEngine {
   bool at_night;
 };
 inline OnEngine at_night(Engine engine) { return {engine, true}; }
+inline bool night() { return std::getenv("BRICK_NIGHT") != nullptr; }
 
 inline std::vector<Engine> engines(std::initializer_list<OnEngine> all) {
   std::vector<Engine> chosen;
   for (const OnEngine& one : all)
-    if (!one.at_night || std::getenv("BRICK_NIGHT") != nullptr) chosen.push_back(one.engine);
+    if (!one.at_night || night()) chosen.push_back(one.engine);
   return chosen;
 }
 

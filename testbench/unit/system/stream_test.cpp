@@ -22,7 +22,7 @@ enum class Fault { kNone, kLost, kDoubled, kSwapped };
 class StreamOn : public Controller {
  protected:
   // BRICK_STREAM_LINES: lines of each stream.
-  long lines(long on_systemc = 2000, long in_lockstep = 50) const {
+  long lines(long on_systemc = 2000, long in_lockstep = night() ? 100 : 50) const {
     const char* wanted = std::getenv("BRICK_STREAM_LINES");
     if (wanted != nullptr) return std::strtol(wanted, nullptr, 10);
     return GetParam() == Engine::kSystemC ? on_systemc : in_lockstep;
