@@ -137,6 +137,22 @@ TYPED_TEST(MacroIcOn, DirectionBitsStopDrivingEachClockAlone) {
   }
 }
 
+TYPED_TEST(MacroIcOn, EachPinIsTakenWhileItsNetIsHigh) {
+  for (const bool phase : {false, true}) {
+    SCOPED_TRACE(phase ? "PHASE" : "SERVO");
+    this->rig.power_up();
+    this->rig.pins(!phase, phase);
+    this->drive(20, 0, 0);
+    this->rig.run(3 * 13057);  // past the period of the reset values
+    EXPECT_EQ(this->rig.phase_oe(), !phase);
+    EXPECT_EQ(this->rig.servo_oe(), phase);
+    this->rig.pins(true, true);
+    this->rig.run(3 * 43);
+    EXPECT_TRUE(this->rig.phase_oe());
+    EXPECT_TRUE(this->rig.servo_oe());
+  }
+}
+
 TYPED_TEST(MacroIcOn, AMacroGateHasOneDirectionBitAndNoServoClock) {
   this->rig.set_gate(true);
   EXPECT_EQ(this->rig.read(true, macro::kClock), 0x3018D2u) << "reset value without bit 13";
