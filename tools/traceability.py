@@ -277,11 +277,11 @@ def plain_name(name):
 
 
 def cmake_names(root):
-    """({folder: what the names of its Python cases begin with}, {suite: entry that runs all of it}), from add_test."""
+    """({folder: what names of its Python cases may begin with}, {suite: entry that runs all of it}), from add_test."""
     prefixes, suites = {}, {}
     for file in files(root, ["testbench"], {".txt"}):
         text = (root / file).read_text()
-        prefixes.update({str(file.parent): m[1] for m in re.finditer(r"add_test\(NAME (\w+)\.\$\{\w+\}", text)})
+        prefixes[str(file.parent)] = re.findall(r"add_test\(NAME (\w+)\.\$\{\w+\}", text)
         whole = re.finditer(r"add_test\(NAME (\S+) COMMAND \S+ --gtest_filter=(\w+)\.\*", text)
         suites.update({m[2]: m[1] for m in whole})
     return prefixes, suites
@@ -302,7 +302,9 @@ def results_of(root, tests, junit):
         bench = test.name.startswith("bench ")
         name = test.name.removeprefix("bench ").replace("-", "_")
         if bench or test.file.endswith(".py"):
-            name = f"{'brick' if bench else prefixes.get(str(pathlib.Path(test.file).parent), 'brick')}.{name}"
+            starts = [] if bench else prefixes.get(str(pathlib.Path(test.file).parent), [])
+            names = [f"{start}.{name}" for start in starts or ["brick"]]
+            name = next((each for each in names if each in runs), names[0])
         runs_of = [entries[name]] if name in entries and name not in runs else runs[name]
         if not runs_of and name.split(".")[0] in suites:
             runs_of = [run for entry, run in entries.items() if entry == suites[name.split(".")[0]]]

@@ -112,7 +112,8 @@ class Traceability(Tree):
 
     def test_names_of_ctest_are_found(self):
         """Cases of a folder's own name, cases that end in an engine, suites that one entry runs."""
-        self.write("testbench/unit/app/CMakeLists.txt", "foreach(case a)\nadd_test(NAME brick.${case} COMMAND x)\n")
+        self.write("testbench/unit/app/CMakeLists.txt", "foreach(case a)\nadd_test(NAME brick.${case} COMMAND x)\n"
+                   "foreach(page tour)\nadd_test(NAME docs.${page} COMMAND x)\n")
         self.write("testbench/unit/app/bench_acceptance.py", "# covers: BREQ-1\ndef a_lockstep():\n    pass\n")
         self.write("testbench/unit/timing/CMakeLists.txt", "add_test(NAME timing.${case} COMMAND x)\n")
         self.write("testbench/unit/timing/timing_acceptance.py", "# covers: BREQ-1\ndef bad_access():\n    pass\n")
