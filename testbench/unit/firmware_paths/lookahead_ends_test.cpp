@@ -81,6 +81,21 @@ TEST_F(LookaheadEnds, BackIsNotBeyondADwell) {
   expect_clean();
 }
 
+// motion:7.1/1: Isx13 counts when a sequence begins. One that waits at its corner and finds it 0 has segments of 1 ms.
+TEST_F(LookaheadEnds, SegmentsThatAreSwitchedOffWhileACornerWaits) {
+  ASSERT_EQ(host("I5183=0.9 I5185=0.9 I5182=100"), "");
+  store({"TM200 TA20 TS0", "X5", "Y5"});
+  ASSERT_EQ(host("&1B1R"), "");
+  go(200 + 20 + 10 + 100);
+  ASSERT_EQ(motors[0].trajectory, 5000 * 3072);
+  ASSERT_EQ(motors[1].trajectory, 0) << "it waits";
+  ASSERT_EQ(host("I5113=0"), "");
+  go(500);
+  EXPECT_EQ(motors[1].trajectory, 5000 * 3072);
+  EXPECT_FALSE(run_is_running(0));
+  expect_clean();
+}
+
 // `<` at whatever time about a DWELL and the end of the program, then `>`: it comes to its end.
 TEST_F(LookaheadEnds, BackAndForthAboutADwellAndTheEnd) {
   store({"TM100 TA20 TS0", "X2", "DWELL20", "X4"});
