@@ -104,7 +104,7 @@ TEST_F(IsaCheckerTest, Row16IsJudgedForMovesOfLaToTheWindow) {
   EXPECT_THAT(broken(), ::testing::IsEmpty());
   at(now_ + 200 * kNs, [this] { in_.isa_memr_n = false; });  // it never came
   play();
-  EXPECT_EQ(broken(), std::vector<std::string>{"t16"});
+  ASSERT_EQ(broken(), std::vector<std::string>{"t16"});
   EXPECT_EQ(timing_address(checker_.ledger().violations()[0].where), "memory 0x0C0000");
 }
 
@@ -163,6 +163,18 @@ TEST_F(IsaCheckerTest, BytesOfTheHostPortHaveTheirDistances) {
       EXPECT_EQ(evaluated(IsaChecker::kH5), is(first, {0, 1, 7}) ? 1u : 0u);
       EXPECT_EQ(evaluated(IsaChecker::kH6), is(first, {0, 1, 7}) ? 0u : 1u);
     }
+}
+
+// A write between two reads is nothing to the high time of the read strobe, nor a read to that of the write strobe.
+TEST_F(IsaCheckerTest, StrobesOfTheHostPortAreTwo) {
+  constexpr TimeFs kBetween = (300 + 600 + 300) * kNs;  // a cycle of the other, and what is on its two sides
+  const auto margin = [this](Rule rule) { return checker_.ledger().row(rule, IsaChecker::kIo).margin; };
+  io({}, 0x215);
+  iow({}, 0x215);
+  io({}, 0x215);
+  EXPECT_EQ(margin(IsaChecker::kH2), kBetween - 4'950'000);
+  iow({}, 0x215);
+  EXPECT_EQ(margin(IsaChecker::kH6), kBetween - 8'250'000);
 }
 
 // Low for the 25.43 ns of every access to the RAM is not waiting (host-bus:3.4).

@@ -203,6 +203,35 @@ TEST_P(BoardInterrupts, The8259TakesTheOtherControllersPlace) {
   EXPECT_EQ(io_read(11), 0xFFu);
 }
 
+// host-bus:3.8/3: RESETDRV resets what stands behind the host bus, and a request with it; an 8259 does not see it.
+TEST_P(BoardInterrupts, ResetdrvResetsTheHostSideAndNo8259) {
+  const auto resetdrv = [this] {
+    for (const bool level : {true, false}) {
+      rig.in.isa_resetdrv = level;
+      settle();
+    }
+  };
+  rig.run(6);
+  io_write(0, 0x08);
+  io_write(11, 0x80);
+  io_write(10, 0x02);
+  rig.write(true, kHostSignals, 2);
+  rig.run(12);
+  EXPECT_EQ(rig.get(pin::kIsaIrq), 1u);
+  resetdrv();
+  EXPECT_EQ(rig.get(pin::kIsaIrq), 0u);
+  for (const unsigned offset : {0u, 10u, 11u}) EXPECT_EQ(io_read(offset), 0u) << "+" << offset;
+  io_write(10, 0x02);
+  EXPECT_EQ(rig.get(pin::kIsaIrq), 0u) << "the line has been high all the time";
+  rig.write(true, kHostSignals, 0);
+  fit_8259();
+  rig.write(true, kHostSignals, 2);
+  rig.run(12);
+  resetdrv();
+  EXPECT_EQ(rig.get(pin::kIsaIrq), 1u);
+  EXPECT_EQ(io_read(9), 0xFDu) << "IMR";
+}
+
 // host-bus:3.5/2: a PC senses edges, so what a service leaves raises IRQ anew, 4 clocks of clk_ref later.
 TEST_P(BoardInterrupts, IrqRisesAnewForALevelThatAClearLeaves) {
   rig.run(6);

@@ -36,6 +36,11 @@ TEST_F(DpramCollisionTest, TwoReadsOfOneCellDoNotWait) {
   EXPECT_FALSE(host_busy());
   EXPECT_EQ(both.get("cpu_rdata"), 0x0101u);
   EXPECT_EQ(both.get("mem_rdata"), 0x0101u);
+  host_end_read();  // and with the CPU first
+  host_start(8, true);
+  both.ref();
+  EXPECT_FALSE(host_busy());
+  EXPECT_EQ(both.get("mem_rdata"), 0x0101u);
 }
 
 TEST_F(DpramCollisionTest, CpuWaitsForAHostWriteAndThenReadsTheNewValue) {

@@ -142,12 +142,13 @@ TEST_F(DpramTest, AWriteStrobeThatIsTooShortWritesNothing) {
 }
 
 // A strobe that has ended before its access, as one without wait states, and the next with another address at once:
-// what is asked for once is done once, where it was asked for, at whatever tick each of the two falls and rises.
+// what is asked for once is done once, where it was asked for, at whatever tick each of the two falls and rises. Of
+// two falls at least two ticks apart (host-bus:2.6/9) no tick may see the strobe high.
 TEST_F(DpramTest, AStrobeThatHasEndedTakesNothingOfTheNext) {
   unsigned made = 0;
   for (const bool busy : {false, true})
     for (int low = 0; low <= 6; ++low)
-      for (int high = 1; high <= 4; ++high) {
+      for (int high = low < 2 ? 1 : 0; high <= 4; ++high) {
         SCOPED_TRACE(::testing::Message() << "low for " << low << ", high for " << high << ", BUSY " << busy);
         host_write(20, 0x2020);
         host_write(21, 0x2121);
@@ -177,7 +178,7 @@ TEST_F(DpramTest, AStrobeThatHasEndedTakesNothingOfTheNext) {
         made += first == 0xAAAA ? 1 : 0;
         ASSERT_EQ(both.difference(), "");
       }
-  EXPECT_EQ(made, 16u);
+  EXPECT_EQ(made, 20u);
 }
 
 // The same for reads: the pins are driven with the word of the strobe that is low, or not at all.
@@ -257,6 +258,16 @@ TEST_F(DpramTest, ThePinsAreDrivenFromTheDataToTheEndOfTheStrobe) {
   cpu_start_write(6, 1);
   both.ticks(kAccess + 2);
   EXPECT_FALSE(both.get("cpu_drive"));
+  cpu_end();
+  both.ticks(kRest);
+  host_start(6, false);
+  both.ref(2);
+  cpu_start_read(6);
+  both.ticks(kAccess + 6);
+  EXPECT_FALSE(both.get("cpu_drive")) << "BUSY: its word does not stand yet";
+  host_end_write(2);
+  both.tick();
+  EXPECT_TRUE(both.get("cpu_drive"));
   cpu_end();
 }
 

@@ -99,16 +99,20 @@ TEST_F(IsaSlaveTest, EightBitSlotIsDecodedWithoutLa) {
   both.in.slot8 = true;
   ticks(3);
   both.in.isa_sbhe_n = true;
-  for (unsigned bit = 16; bit < 20; ++bit) {
-    both.in.isa_sa = 0xD0000 ^ 1u << bit;
+  const auto write = [&](unsigned address) {
+    both.in.isa_sa = address;
     both.in.isa_la = 0x7F;
     ticks(11);
     both.in.isa_memw_n = false;
     ticks(28);
     both.in.isa_memw_n = true;
     ticks(12);
-  }
+  };
+  for (unsigned bit = 16; bit < 20; ++bit) write(0xD0000 ^ 1u << bit);
   EXPECT_TRUE(strobes.empty());
+  write(0xD0000);
+  EXPECT_EQ(strobes.size(), 1u) << "whatever is on the pins of LA";
+  strobes.clear();
   mem_write(0x3D0000, 1);
   mem_write(0xFD0001, 2);
   EXPECT_EQ(strobes, (std::vector<Strobe>{{"mem_wr", 0, 1u << 16 | 1}, {"mem_wr", 0, 2u << 16 | 0x0202}}));
@@ -214,6 +218,15 @@ TEST_F(IsaSlaveTest, BusIsDrivenInReadsOfOursOnly) {
     ticks(15);
   };
   both.in.isa_sbhe_n = false;
+  for (const unsigned address : {0x212u, 0x213u}) {
+    set_address(address);
+    ticks(11);
+    both.in.isa_ior_n = false;
+    ticks(20);
+    EXPECT_EQ(both.get("isa_sd_oe"), 1u) << "I/O is on the low lane, whatever SBHE# is";
+    both.in.isa_ior_n = true;
+    ticks(15);
+  }
   never(0x220, &Inputs::isa_ior_n);
   never(0xE0000, &Inputs::isa_memr_n);
   never(0x1D0000, &Inputs::isa_memr_n);

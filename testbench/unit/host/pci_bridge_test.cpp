@@ -70,7 +70,7 @@ class PciBridgeTest : public ::testing::Test {
     }
     if (command) payload.set_extension(&extension);
     sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-    bridge_.transport(payload, delay);
+    target_->transport(payload, delay);
     if (command) payload.clear_extension(&extension);
     return payload.get_response_status();
   }
@@ -96,6 +96,7 @@ class PciBridgeTest : public ::testing::Test {
   LocalCycles local_;
   PciBridge bridge_{
       sc_core::sc_gen_unique_name("bridge"), {0x210, 0xD0000, 0x10000}, {0x1234, 0x5678, 0x9ABC, 0xDEF0, 7}};
+  PciBridge* target_ = &bridge_;  // of access()
 };
 
 // Whoever made the local cycles is gone: power-on tells nobody, INTA# is high.
@@ -156,13 +157,27 @@ TEST_F(PciBridgeTest, OnesWrittenToABarTellItsSize) {
   EXPECT_EQ(configuration(PciBridge::kBar1), 0xFFFF0000u) << "64 KiB of memory, 32 bits, not prefetchable";
 }
 
+// host-bus:3.6/2: 16 KiB where the board has such a window.
+TEST_F(PciBridgeTest, BarOfTheMemoryIsAsLongAsItsWindow) {
+  PciBridge small(sc_core::sc_gen_unique_name("small"), {0x210, 0xD4000, 0x4000});
+  small.attach(local_);
+  target_ = &small;
+  configure(PciBridge::kBar1, 0xFFFFFFFF);
+  EXPECT_EQ(configuration(PciBridge::kBar1), 0xFFFFC000u);
+  start_up();
+  EXPECT_EQ(try_read(PciSpace::kMemory, kMemory + 0x3FFF), tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(try_read(PciSpace::kMemory, kMemory + 0x4000), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_THAT(local_.cycles, ::testing::ElementsAre("read D7FFE 2"));
+}
+
 TEST_F(PciBridgeTest, IoIsBytesOnTheLocalBus) {
   EXPECT_EQ(read(PciSpace::kIo, kIo + 2, 1), 0x12u);
   write(PciSpace::kIo, kIo + 7, 0x41, 1);
   EXPECT_EQ(read(PciSpace::kIo, kIo + 4, 4), 0x17161514u);
   write(PciSpace::kIo, kIo + 4, 0x44332211, 4, 0b1010);
+  EXPECT_EQ(read(PciSpace::kIo, kIo + 15, 1), 0x1Fu);
   EXPECT_THAT(local_.cycles, ::testing::ElementsAre("in 212", "out 217 41", "in 214", "in 215", "in 216", "in 217",
-                                                    "out 215 22", "out 217 44"));
+                                                    "out 215 22", "out 217 44", "in 21F"));
 }
 
 TEST_F(PciBridgeTest, MemoryIsHalfWordsTheLowOneFirst) {

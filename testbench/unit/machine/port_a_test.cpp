@@ -196,13 +196,15 @@ TEST(PortA, TaAddsClocksUntilItIsLowAtTheSample) {
   rig.set_wait_states(3);
   const auto start = rig.cycle;
   EXPECT_EQ(rig.read('Y', 0x060000), 0x600Du);
-  const PortACycle& c = *rig.last;
+  const PortACycle c = *rig.last;
   ASSERT_GT(c.stretched, 0u);
   EXPECT_EQ(rig.cycle - start, 4 + c.stretched);
   EXPECT_GE(fs_to_tick_floor(c.ta_time), 60) << "the sample that ended the cycle";
   const auto clock = static_cast<TimeFs>(tc_ns(8) * kNs);
   EXPECT_LT(fs_to_tick_floor(c.ta_time - clock), 60) << "the sample before";
   EXPECT_NEAR((c.strobe_high - c.strobe_low) / kNs, (3.25 + c.stretched) * tc_ns(8), 1e-4);
+  rig.read('Y', 0x060000);
+  EXPECT_GE((rig.last->strobe_low - c.strobe_high) / kNs, 1.75 * tc_ns(8) - 4 - kEpsilon) << "row 113 behind it";
 }
 
 TEST(PortA, TaCountsOnlyWithWaitStates) {
