@@ -52,6 +52,23 @@ TEST_F(IsaCheckerTest, EachRowOfTheMemoryCycleHasItsLimit) {
   expect_limit(IsaChecker::kT18, read, &Points::sa, -34 * kNs, 1, kWide, usual);
 }
 
+// Rows 3, 5, 6 and 11 are those of memory cycles too, row 2 that of one of 8 bits.
+TEST_F(IsaCheckerTest, RowsOfTheIoCycleHoldForMemoryToo) {
+  const auto read = [this](const Points& p) { memr(p); };
+  const auto write = [this](const Points& p) { memw(p); };
+  Points close;
+  close.sa = close.la = -120 * kNs;
+  for (const auto region : {IsaChecker::kMemory16, IsaChecker::kMemory8}) {
+    in_.slot8 = region == IsaChecker::kMemory8;
+    show();
+    expect_limit(IsaChecker::kT3, read, &Points::release, 25 * kNs, -1, region);
+    expect_limit(IsaChecker::kT5Off, read, &Points::off, 30 * kNs, 1, region);
+    expect_limit(IsaChecker::kT6, write, &Points::data, 22 * kNs, 1, region);
+    expect_limit(IsaChecker::kT11, read, &Points::next, 170 * kNs, -1, region, close);
+  }
+  expect_limit(IsaChecker::kT2, read, &Points::width, 530 * kNs, -1, IsaChecker::kMemory8);
+}
+
 // Behind IOCHRDY: one BCLK to the command's end (row 9), and the host looks at the data as long before that as without
 // it, t13 - t14 = 46 ns or t2 - t4 = 41 ns.
 TEST_F(IsaCheckerTest, DataBehindIochrdyHaveTheirLimit) {

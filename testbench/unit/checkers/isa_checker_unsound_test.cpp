@@ -65,9 +65,9 @@ TEST_F(IsaCheckerTest, WindowOfTheBoardIsThatOfItsSwitches) {
   }
   in_.slot8 = true;
   show();
-  at(end_ + 150 * kNs, [this] { in_.isa_la = 0x7F; });
+  at(end_ + 250 * kNs, [this] { in_.isa_la = 0x7F; });
   EXPECT_TRUE(own(0xD4000)) << "whatever is on the pins of LA";
-  at(end_ + 150 * kNs, [this] { in_.isa_la = 0xD4000 >> 17; });
+  at(end_ + 250 * kNs, [this] { in_.isa_la = 0xD4000 >> 17; });
   EXPECT_FALSE(own(0xA4000));
 }
 

@@ -176,8 +176,14 @@ TEST_F(HostPortTest, CpuInterruptFollowsItsThreeSources) {
   cpu_read(kHorx);
   EXPECT_EQ(both_.get("irq"), 0u);
   cpu_write(kHcr, 4);
+  EXPECT_EQ(both_.get("irq"), 0u);
   host_write(kCvr, 0x80 | 0x25);
   EXPECT_EQ(both_.get("irq"), 1u) << "HCIE and HCP";
+  cpu_write(kHcr, 2);
+  cpu_write(kHotx, 1);
+  both_.ref();
+  cpu_write(kHotx, 2);
+  EXPECT_EQ(both_.get("irq"), 0u) << "HOTX is full";
 }
 
 TEST_F(HostPortTest, HostCommandPendsUntilTheCpuTakesIt) {

@@ -195,6 +195,15 @@ TEST_F(PciBridgeTest, MemoryIsHalfWordsTheLowOneFirst) {
                                                     "write DFFFE 5500 2", "read D0002 3"));
 }
 
+TEST_F(PciBridgeTest, ByteEnablesCountInReadsAndInTheConfigurationSpaceToo) {
+  write(PciSpace::kConfiguration, PciBridge::kBar1, 0x12345678, 4, 0b1000);
+  EXPECT_EQ(configuration(PciBridge::kBar1), (kMemory & 0xFFFFFF) | 0x12000000);
+  std::vector<unsigned char> data(4, 0x5A);
+  EXPECT_EQ(access(PciSpace::kIo, kIo + 4, false, data, 0b0101), tlm::TLM_OK_RESPONSE);
+  EXPECT_THAT(data, ::testing::ElementsAre(0x14, 0x5A, 0x16, 0x5A));
+  EXPECT_THAT(local_.cycles, ::testing::ElementsAre("in 214", "in 216"));
+}
+
 TEST_F(PciBridgeTest, NobodyAnswersOutsideTheRangesOrWithoutEnable) {
   using Space = PciSpace;
   for (const auto& [space, address] : std::vector<std::pair<Space, std::uint64_t>>{{Space::kIo, kIo - 1},
