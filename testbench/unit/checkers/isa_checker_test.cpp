@@ -180,6 +180,11 @@ TEST_F(IsaCheckerTest, BytesOfTheHostPortHaveTheirDistances) {
       EXPECT_EQ(evaluated(IsaChecker::kH5), is(first, {0, 1, 7}) ? 1u : 0u);
       EXPECT_EQ(evaluated(IsaChecker::kH6), is(first, {0, 1, 7}) ? 0u : 1u);
     }
+  checker_.ledger().forget();
+  for (const std::uint32_t other : {0x218u, 0x21Fu, 0x222u, 0x227u}) io({}, other), iow({}, other);
+  for (const Rule rule :
+       {IsaChecker::kH1, IsaChecker::kH2, IsaChecker::kH3, IsaChecker::kH4, IsaChecker::kH5, IsaChecker::kH6})
+    EXPECT_EQ(evaluated(rule), 0u) << "the interrupt controller's, or another device's";
 }
 
 // A write between two reads is nothing to the high time of the read strobe, nor a read to that of the write strobe.

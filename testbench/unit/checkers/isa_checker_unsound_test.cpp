@@ -71,6 +71,24 @@ TEST_F(IsaCheckerTest, WindowOfTheBoardIsThatOfItsSwitches) {
   EXPECT_FALSE(own(0xA4000));
 }
 
+TEST_F(IsaCheckerTest, IoBlockOfTheBoardIsThatOfItsSwitches) {
+  const auto own = [this](std::uint32_t address) {
+    Points never;
+    never.valid = kNever;
+    checker_.ledger().forget();
+    io(never, address);
+    return !broken().empty();
+  };
+  in_.io_base = 0x71;
+  for (const bool decode16 : {true, false}) {
+    in_.io_decode16 = decode16;
+    show();
+    for (const std::uint32_t address : {0x710u, 0x71Fu}) EXPECT_TRUE(own(address)) << decode16 << address;
+    for (const std::uint32_t address : {0x310u, 0xF10u, 0x8710u}) EXPECT_EQ(own(address), !decode16) << address;
+    for (const std::uint32_t address : {0x700u, 0x730u, 0x610u}) EXPECT_FALSE(own(address)) << decode16 << address;
+  }
+}
+
 // Row 5: each lane that the host reads, until the command ends.
 TEST_F(IsaCheckerTest, DataThatGoBeforeTheCommandBreakRow5) {
   for (const unsigned left : {0u, 1u, 2u}) {
@@ -95,6 +113,9 @@ TEST_F(IsaCheckerTest, ReadThatTheBoardNeedNotAnswerBreaksNothing) {
   in_.isa_aen = true;
   show();
   io(never);
+  Points dma = never;
+  dma.sa = -50 * kNs;  // nor is it a cycle of row 1
+  io(dma);
   in_.isa_aen = false;
   show();
   never.width = 489 * kNs;  // too short for its data, and reported as such
@@ -169,14 +190,30 @@ TEST_F(IsaCheckerTest, UnsoundHostsAreNamed) {
   EXPECT_EQ(broken(), std::vector<std::string>{"room-in-tx"});
   checker_.ledger().forget();
 
-  for (const bool line : {false, true}) {
-    end_ = now_;
-    at(end_ + 500 * kNs, [this] { in_.isa_ior_n = false; });
-    at(end_ + 700 * kNs, [=] { line ? in_.isa_resetdrv = true : in_.rst_n = false; });
-    at(end_ + 1100 * kNs, [this] { in_.isa_ior_n = true; });
-    at(end_ + 1200 * kNs, [=] { in_.isa_resetdrv = false, in_.rst_n = true; });
-    play();
-    EXPECT_EQ(broken(), std::vector<std::string>{"whole-cycle"});
+  for (const bool line : {false, true})
+    for (const bool waits : {false, true}) {  // nor are data or IOCHRDY of such a cycle judged
+      end_ = now_;
+      at(end_ + 300 * kNs, [this] { in_.isa_sa = 0x212; });
+      at(end_ + 500 * kNs, [this] { in_.isa_ior_n = false; });
+      at(end_ + 600 * kNs, [=] { out_.set(pin::kIsaIochrdy, waits ? 0 : 1); });
+      at(end_ + 700 * kNs, [=] { line ? in_.isa_resetdrv = true : in_.rst_n = false; });
+      at(end_ + 1050 * kNs, [this] { out_.set(pin::kIsaIochrdy, 1); });
+      at(end_ + 1100 * kNs, [this] { in_.isa_ior_n = true; });
+      at(end_ + 1200 * kNs, [=] { in_.isa_resetdrv = false, in_.rst_n = true; });
+      play();
+      EXPECT_EQ(broken(), std::vector<std::string>{"whole-cycle"});
+      checker_.ledger().forget();
+    }
+}
+
+TEST_F(IsaCheckerTest, EachLineOfTheAddressHasToStand) {
+  const std::vector<std::function<void()>> moves{[this] { in_.isa_sa ^= 0x20; }, [this] { in_.isa_aen = !in_.isa_aen; },
+                                                 [this] { in_.isa_sbhe_n = !in_.isa_sbhe_n; }};
+  for (const auto& move : moves) {
+    at(end_ + 600 * kNs, move);  // and back
+    at(end_ + 650 * kNs, move);
+    io({});
+    EXPECT_EQ(broken(), std::vector<std::string>{"address-stands"});
     checker_.ledger().forget();
   }
 }

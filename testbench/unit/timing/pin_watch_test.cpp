@@ -78,6 +78,29 @@ TEST(PinWatch, ALatePinOfTheStrobeIsNoMoreThanThat) {
   EXPECT_TRUE(read({{kLow, 5}, {kHigh + 3 * kNs + 1, 5, false}}, 0, 3 * kNs).drives_outside);
 }
 
+// host-bus:2.5/7: address, space and select, each alone.
+TEST(PinWatch, EachLineOfTheAddressIsSeenToMove) {
+  const std::function<void(PortALevels&)> lines[] = {
+      [](PortALevels& l) { l.addr ^= 1; }, [](PortALevels& l) { l.x = !l.x; }, [](PortALevels& l) { l.aa ^= 8; }};
+  for (const auto& line : lines) {
+    PinWatch watch;
+    PinCycle cycle;
+    watch.on_cycle = [&](const PinCycle& c) { cycle = c; };
+    PortALevels levels;
+    levels.wait_states = 7;
+    const auto move = [&](TimeFs time, const std::function<void(PortALevels&)>& edit) {
+      edit(levels);
+      watch.cpu_moved(time, levels);
+    };
+    move(kStart, [](PortALevels& l) { l.addr_oe = true; });
+    move(kLow, [](PortALevels& l) { l.rd_n = false; });
+    move(kLow + 20 * kNs, line);
+    move(kHigh, [](PortALevels& l) { l.rd_n = true; });
+    EXPECT_TRUE(cycle.address_moved);
+    EXPECT_EQ(cycle.end, kLow + 20 * kNs);
+  }
+}
+
 TEST(PinWatch, ClocksThatTaAskedFor) {
   const Shows busy{kLow + 5 * kNs, 5, true, true};
   const auto until = [](TimeFs time) { return Shows{time, 5, true, false}; };

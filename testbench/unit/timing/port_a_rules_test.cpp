@@ -389,6 +389,40 @@ TEST(PortATiming, AStrobeIsLowForTwoPeriodsOfTheReferenceClock) {
       }
 }
 
+// host-bus:2.2: without a wait state rows 104 to 108, 115 and 116 have a form, and no other.
+TEST(PortATiming, WithoutWaitStatesSevenRowsHaveAForm) {
+  for (const bool write : {true, false}) {
+    PortATiming timing;
+    const PinCycle first = easy(write, 8, 0, 0);
+    timing.cycle(first);
+    timing.cycle(easy(write, 8, 0, 0, first.end));
+    std::vector<std::string> rows;
+    for (unsigned rule = PortATiming::k100; rule <= PortATiming::k119; ++rule)
+      if (timing.ledger().row(rule, PortATiming::kGateIcs).evaluations > 0)
+        rows.push_back(timing.ledger().rules()[rule].id);
+    EXPECT_EQ(rows, write ? (std::vector<std::string>{"107", "108"})
+                          : (std::vector<std::string>{"104", "105", "106", "115", "116"}));
+  }
+}
+
+// host-bus:2.2/1, host-bus:2.2/4: a clock for which /TA may have been seen or not. The CPU need not add it; where it
+// has, the data have it too.
+TEST(PortATiming, AClockThatTaDidNotSurelyAskForIsThatOfTheDataAlone) {
+  for (const unsigned number : {104u, 105u, 116u})
+    for (const TimeFs beyond : {0, 1}) {
+      PortATiming timing;
+      PinCycle c = easy(false, 8, 3, 2);
+      c.asked = 1;
+      if (number == 116)
+        c.strobe_low = c.strobe_high - row(116, 3, 1)->fs(8) + beyond;
+      else
+        c.data_valid = (number == 104 ? c.start : c.strobe_low) + row(number, 3, 2)->fs(8) + beyond;
+      timing.cycle(c);
+      EXPECT_EQ(::testing::Matches(::testing::Contains(std::to_string(number)))(violated(timing)), beyond == 1)
+          << number;
+    }
+}
+
 // Both drive D, by a femtosecond: the one that came later is told.
 TEST(PortATiming, OneSideLetsGoBeforeTheOtherDrives) {
   for (const bool cpu_followed : {true, false})
