@@ -308,6 +308,8 @@ TEST(ITable, MotorsOnAMacroIcHaveItsAddresses) {
   EXPECT_EQ(c.line("I102=0 I124=0 I8000=0 I5061=0 I6840=0"), "");
   EXPECT_EQ(c.line("I102=* I124=* I8000=* I5061=* I6840=*"), "");
   EXPECT_EQ(c.line("I102 I124 I8000 I5061 I6840"), "$78420|$40001|$2F8420|$78800|$4000");
+  Controller other(1u << 1 | kMacroIc0);
+  EXPECT_EQ(other.line("I102 I124 I8000 I5061 I6840"), "$78102|$1|$78100|$0|$0") << "a servo IC, not the first";
 }
 
 TEST(ITable, LockBitsKeepTheirGroupOnly) {

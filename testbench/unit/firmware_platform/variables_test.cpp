@@ -119,6 +119,8 @@ TEST(IVariables, RunsAndStepsOfNumbers) {
   EXPECT_EQ(c.line("P1=3 I(P1*100+120)=7 I420"), "7");
   EXPECT_EQ(c.line("I420=* I420"), "0");
   EXPECT_EQ(c.line("I8190..8192"), "ERR003");
+  EXPECT_EQ(c.line("P8181,3,5=6 P8181 P8186 P8191"), "6|6|6");
+  EXPECT_EQ(c.line("P8182,3,5=7"), "ERR003") << "8192";
   for (const char* wrong : {"P5,3,0=1", "P5,0,1=1", "P5,0", "P5,3,0"}) EXPECT_EQ(c.line(wrong), "ERR003") << wrong;
   EXPECT_EQ(c.line("P5"), "0");
 }
@@ -383,6 +385,8 @@ TEST(QVariables, ShareThePoolByI68) {
   c.line("&2Q0=7");
   EXPECT_EQ(c.line("&2Q0 &1Q0"), "7|0");
   EXPECT_EQ(c.line("RL$8200"), "7");  // 512 each with 16 coordinate systems
+  EXPECT_EQ(c.line("&1Q512 Q512=9"), "0");
+  EXPECT_EQ(c.line("&2Q0"), "7") << "no Q512 of &1";
   c.line("I68=1");
   c.line("&2Q4095=9");
   EXPECT_EQ(c.line("RL$9FFF"), "9");

@@ -279,6 +279,33 @@ TEST_F(BinaryRotary, NothingComesInWhileAListingIsMade) {
   EXPECT_EQ(host("LIST ROT"), "X1");
 }
 
+// A reply of more than the 4096 characters of the port's queue waits for its host.
+TEST_F(BinaryRotary, NothingComesInWhileAListingWaits) {
+  static unsigned waits, lines;
+  ASSERT_EQ(host("I45=1 DEF ROT 2000 OPEN ROT"), "");
+  std::string line;
+  for (int i = 0; i < 85; ++i) line += "LIN";
+  for (int i = 0; i < 20; ++i) ASSERT_EQ(host(line), "");
+  ASSERT_EQ(host("CLOSE OPEN BINARY ROTARY"), "");
+  Buffer buffer;
+  buffer.set_up();
+  buffer.put("X1");
+  waits = lines = 0;
+  fake_hal_on_wait([] {
+    std::uint8_t c = 0;
+    while (host_port_next_output(&c)) {}
+    ++waits;
+    period();
+    lines = rotary_buffers[0].lines;
+  });
+  (void)host("LIST ROT");
+  fake_hal_on_wait(nullptr);
+  EXPECT_GE(waits, 1u) << "nothing has waited: the test shows nothing";
+  EXPECT_EQ(lines, 20u);
+  period();
+  EXPECT_EQ(host("PR"), "21");
+}
+
 TEST_F(BinaryRotary, ResetForgetsEverything) {
   BRICK_COVERS("BIN-2");
   open();

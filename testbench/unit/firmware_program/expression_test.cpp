@@ -159,6 +159,7 @@ TEST_F(Expression, ConstantsHaveALimitInEitherSign) {
     const std::string s = sign;
     EXPECT_EQ(platform::host("P1=" + s + "34359738368 P1=P1/1024 P1"), s + "33554432");
     EXPECT_EQ(platform::host("P1=" + s + "34359738369"), "ERR003");
+    EXPECT_EQ(platform::host(s + "34359738369"), "ERR003");
     EXPECT_EQ(platform::host("#1->" + s + "34359738368X #1->"), s + "34359738368X");
     EXPECT_EQ(platform::host("#1->" + s + "34359738369X"), "ERR003");
     EXPECT_EQ(platform::host("#1->X" + std::string(s.empty() ? "+" : s) + "34359738369"), "ERR003");

@@ -31,6 +31,9 @@ TEST_F(Feedrate, NoneIsAnErrorOfTheMoveThatNeedsIt) {
 }
 
 TEST_F(Feedrate, IsNotNeededByOtherMoves) {
+  run({"TA10TS0 F0", "X0", "P2=1"});
+  EXPECT_FALSE(error()) << "no distance";
+  EXPECT_EQ(p(2), 1.0);
   ASSERT_EQ(host("I5186=20 I5113=10"), "");
   run({"TA10TS0 F0", "DELAY5 DWELL5", "X0", "A1", "TM20", "X3", "INC Y0 ABS", "P1=1"});
   EXPECT_FALSE(error()) << "no distance, an axis that goes by Isx86, by time";

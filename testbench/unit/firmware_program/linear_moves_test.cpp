@@ -192,10 +192,13 @@ TEST_F(LinearMoves, BlendsStayWithinTheirMoves) {
 
 // Ixx16 makes the move longer, for all motors.
 TEST_F(LinearMoves, VelocityLimitStretchesTheMove) {
-  fit({"1000X", "1000Y"});
-  ASSERT_EQ(host("I216=5"), "");
-  store({"TM100 TA40 TS0", "X4 Y2"});  // 20 counts a ms
-  follow({changes_of({{4000, 400, 40, 0}}, 40), changes_of({{2000, 400, 40, 0}}, 40)});
+  for (const char* limits : {"I216=5", "I116=10 I216=10"}) {  // Y asks for 400 ms, or X for 400 and Y for 200
+    platform::power_up();
+    fit({"1000X", "1000Y"});
+    ASSERT_EQ(host(limits), "");
+    store({"TM100 TA40 TS0", "X4 Y2"});  // 20 counts a ms
+    follow({changes_of({{4000, 400, 40, 0}}, 40), changes_of({{2000, 400, 40, 0}}, 40)});
+  }
 }
 
 // motion:5.2/2: at 0 neither limits; by default the move would be 125 ms long and its changes 80 ms.

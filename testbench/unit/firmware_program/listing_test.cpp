@@ -165,6 +165,7 @@ TEST_F(Listing, OffsetsCountWordsAndPartsAreCut) {
   EXPECT_EQ(host_lines("LIST PLC5,0,80"), (Lines{"0:IF(M4900=0)", "3:M4900=1", "5:ENDI"}));
   EXPECT_EQ(host_lines("LIST PLC5,3"), (Lines{"3:M4900=1", "5:ENDI"}));
   EXPECT_EQ(host_lines("LIST PLC5,1,3"), (Lines{"3:M4900=1"}));
+  EXPECT_EQ(host_lines("LIST PLC5,0,5"), (Lines{"0:IF(M4900=0)", "3:M4900=1"})) << "lines that begin in it";
   EXPECT_EQ(host("LIST PLC5,6"), "ERR003");  // past its end
   EXPECT_EQ(host("LIST PLC6"), "ERR003");
   EXPECT_EQ(host("LIST PLC5,-1"), "ERR003");

@@ -156,7 +156,8 @@ TEST_F(Rotary, RunningBuffersAreProtected) {
   EXPECT_EQ(host("DEF ROT 30"), "ERR001");
   EXPECT_EQ(host("DEF LOOK 10,10"), "ERR001");
   EXPECT_EQ(host("DELETE ALL TEMPS"), "ERR001");
-  EXPECT_EQ(host("B0"), "ERR001");
+  EXPECT_EQ(host("&2DELETE ALL TEMPS &1"), "ERR001") << "whoever runs";
+  EXPECT_EQ(host("&1B0"), "ERR001");
   EXPECT_EQ(host("OPEN ROT"), "") << "may be opened while it runs";
 }
 

@@ -40,7 +40,8 @@ TEST_F(RunControl, RunNeedsAValidProgram) {
   EXPECT_EQ(host("R"), "ERR015");
   EXPECT_EQ(host("B0R"), "ERR015") << "no rotary buffer";
   ASSERT_EQ(host("DEF ROT 20"), "");
-  EXPECT_EQ(host("B5R"), "ERR015") << "no such program";
+  EXPECT_EQ(host("B5"), "");
+  EXPECT_EQ(host("R"), "ERR015") << "no such program";
   EXPECT_EQ(host("B0"), "");
   EXPECT_EQ(host("R"), "") << "an empty rotary buffer is accepted";
   EXPECT_TRUE(run_is_running(0));
@@ -262,6 +263,8 @@ TEST_F(RunControl, StatusWordsOfAnIdleAndARunningSystem) {
 TEST_F(RunControl, OnLineAxisModes) {
   EXPECT_EQ(host("INC(X,R)"), "");
   EXPECT_EQ(motion_cs_status(0, 0), 0xA80020u | 1u << 18);
+  EXPECT_EQ(host("ABS(X)"), "");
+  EXPECT_EQ(motion_cs_status(0, 0), 0xA80020u) << "the vector by its own letter";
   EXPECT_EQ(host("ABS(X,R) FRAX(A)"), "");
   EXPECT_EQ(motion_cs_status(0, 0), 1u << 7);
   EXPECT_EQ(host("FRAX INC ABS"), "");
@@ -307,10 +310,10 @@ TEST_F(RunControl, AnInactiveMotorHoldsItsSystemAndARunningOneHoldsSave) {
   EXPECT_EQ(host("S"), "ERR013");
   EXPECT_EQ(host("&2#3->X"), "ERR003") << "of &1";
   EXPECT_EQ(host("SAVE"), "");
-  ASSERT_EQ(host("I300=1"), "");
+  ASSERT_EQ(host("&2#4->X I400=0 I300=1"), "");
   EXPECT_EQ(host("&1R"), "ERR012") << "its loop is open";
   motors[2].loop = LOOP_CLOSED;
-  EXPECT_EQ(host("&1R"), "");
+  EXPECT_EQ(host("&1R"), "") << "motor 4 is of another system";
   EXPECT_EQ(host("SAVE"), "ERR001");
   EXPECT_EQ(host("&2SAVE"), "ERR001") << "whoever runs";
 }

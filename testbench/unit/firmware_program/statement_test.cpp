@@ -34,6 +34,8 @@ TEST_F(Statement, AnExpressionCostsOneWordAToken) {
   EXPECT_EQ(words("X(P1*2)"), 4u);     // P1, 2, *, X; brackets are free
   EXPECT_EQ(words("P2000=P1+1"), 4u);  // P1, 1, +, P2000=
   EXPECT_EQ(words("X(SIN(P1))"), 3u);
+  EXPECT_EQ(words("P1=P2+16777217"), 4u);  // 2^24 + 1
+  EXPECT_EQ(words("P1=P2+8589934593"), 5u) << "2^33 + 1: 33 bits do not hold it";
 }
 
 TEST_F(Statement, LongAndShortKeywordsGiveTheSameWords) {
