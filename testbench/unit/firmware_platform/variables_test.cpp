@@ -301,11 +301,11 @@ TEST(SavedData, SurvivesResetAndReInitialisationDoesNotUseIt) {
   c.line("M7->Y:$78002,8,16,S");
   EXPECT_EQ(c.send("SAVE\r"), "\x06");
   c.line("I17=44 P100=0 I3=2");
-  EXPECT_EQ(c.send("$$$\r"), "\x06");
+  EXPECT_EQ(c.send("$$$ I17=5 P100=5\r"), "\x06") << "what stands behind a reset is dropped";
   EXPECT_EQ(c.line("I17 P100 Q5 I7002 I5189"), "33|1.25|-7|1|250.5");
   EXPECT_EQ(c.line("M7->"), "Y:$78002,8,16,S");
   EXPECT_EQ(x(0x078004) >> 20, 1u);
-  c.line("$$$***");
+  c.line("$$$*** I17=5 P100=5");
   c.line("I3=2 I6=1");
   EXPECT_EQ(c.line("I17 P100 I7002"), "10|0|3");
   c.restart();

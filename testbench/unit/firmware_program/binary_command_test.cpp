@@ -150,6 +150,7 @@ TEST_F(BinaryRotary, CommandsAreJudged) {
       {{fields(9, 0, 3, 1, kHalf)}, 0, "CALL1"},
       {{fields(9, 0, 10, 1, kHalf)}, 5, nullptr},       // GOTO
       {{fields(9, 1, 0 | 1 << 6, 0, 1)}, 0, "HM1,32"},  // motor 32 is bit 31
+      {{fields(9, 1, 0 | 1 << 6)}, 0, "HM32"},          // alone: bits 29..0 are 0
       {{fields(9, 1, 0)}, 6, nullptr},
       {{fields(9, 1, 4, 0x3F, 0xFFFFFF)}, 0, "DISPLC0..29"},
       {{fields(9, 1, 2, 0, 1)}, 5, nullptr},  // READ

@@ -55,6 +55,32 @@ TEST_F(BinaryRotary, HeadersThatLieAreErrors) {
   pass();
   EXPECT_EQ(buffer.status(), 0u);
   EXPECT_EQ(ring(1).size(), 1u);
+  buffer.start = 0;
+  buffer.size = 6;  // the least: room for one command
+  buffer.set_up();
+  buffer.put("X2");
+  pass();
+  EXPECT_EQ(buffer.status(), 0u);
+  EXPECT_EQ(ring(1).size(), 2u);
+}
+
+// host-bus:7.5/10: what has been mended is not looked at before the host has written status 0.
+TEST_F(BinaryRotary, AnErrorStopsTheTransferUntilItsBitIs0) {
+  open();
+  Buffer buffer;
+  buffer.set_up();
+  buffer.put("X1");
+  buffer.write(DPRAM_ROTARY_SIZE, 63);
+  pass();
+  ASSERT_EQ(buffer.status(), kError | 2);
+  buffer.write(DPRAM_ROTARY_SIZE, 64);
+  pass();
+  EXPECT_EQ(buffer.status(), kError | 2);
+  EXPECT_TRUE(ring().empty());
+  buffer.write(DPRAM_ROTARY_STATUS, 0);
+  pass();
+  EXPECT_EQ(buffer.status(), 0u);
+  EXPECT_EQ(ring().size(), 1u);
 }
 
 TEST_F(BinaryRotary, WithoutAnOpenBufferAWaitingLineIsAnError) {

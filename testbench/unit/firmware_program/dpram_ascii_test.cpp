@@ -357,6 +357,22 @@ TEST_F(DpramAscii, AHostThatDoesNotReadHoldsUpItselfOnly) {
   EXPECT_EQ(ram_host.take_unsolicited(), Lines{});
 }
 
+// host-bus:6.6/9: a line of one digit is four bytes of the queue, the end three; the first line stands in the buffer.
+TEST_F(DpramAscii, TheNextCommandWaitsWhile2048BytesAreUnread) {
+  static_assert(511 * 4 + 3 < 2048 && 512 * 4 + 3 >= 2048);
+  for (const unsigned lines : {512u, 513u}) {
+    ASSERT_EQ(host("P1=0"), "");
+    ASSERT_TRUE(ram_host.send("P1001.." + std::to_string(1000 + lines)));
+    background(2);
+    ASSERT_TRUE(ram_host.send("P1=1"));
+    background(2);
+    EXPECT_EQ(host("P1"), lines == 512 ? "1" : "0") << lines;
+    EXPECT_EQ(ram_host.finish(DpramHost::kPasses).lines.size(), lines);
+    EXPECT_TRUE(ram_host.finish(DpramHost::kPasses).complete);
+    EXPECT_EQ(host("P1"), "1");
+  }
+}
+
 // One rise a line, which falls when the host has released it.
 TEST_F(DpramAscii, I56RaisesEqu1ForEachLine) {
   ASSERT_EQ(host("I56=1"), "");

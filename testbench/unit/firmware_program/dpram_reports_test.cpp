@@ -118,6 +118,31 @@ TEST_F(DpramReportsTest, ThePeriodIsCountedInServoCycles) {
   EXPECT_FALSE(ready()) << "I47 = 0 is off";
 }
 
+// host-bus:6.4/1, host-bus:6.5/1: both reports of the background, also where no cycle goes by in a pass.
+TEST_F(DpramReportsTest, TheBackgroundsPeriodIsCountedInServoCycles) {
+  reports.choose_motors(1);
+  reports.choose_systems(1);
+  const auto timers = [this] {
+    background(kSettling);
+    return std::pair{ram.read(DPRAM_MOTOR_TIMER), ram.read(DPRAM_BACKGROUND_TIMER)};
+  };
+  for (const unsigned period : {1U, 2U, 7U, 255U}) {
+    ASSERT_EQ(host("I49=0 I57=0 I50=" + std::to_string(period)), "");
+    servo_ticks(1);
+    background(2);
+    ASSERT_EQ(host("I49=1 I57=1"), "");
+    const auto first = timers();
+    EXPECT_EQ(first, (std::pair<std::uint16_t, std::uint16_t>(servo_count(), servo_count())));
+    servo_ticks(period - 1);
+    EXPECT_EQ(timers(), first) << period;
+    servo_ticks(1);
+    EXPECT_EQ(timers(), (std::pair<std::uint16_t, std::uint16_t>(first.first + period, first.second + period)));
+  }
+  ASSERT_EQ(host("I50=0"), "");
+  background(2);
+  EXPECT_FALSE(ready() || (ram.read(DPRAM_BACKGROUND_READY) & DPRAM_DATA_READY) != 0) << "I50 = 0 is off";
+}
+
 TEST_F(DpramReportsTest, NothingIsWrittenWhileTheHostIsBusy) {
   ASSERT_EQ(host("I100=0 M2->D:$8B M2=5"), "");
   reports.choose_motors(1);
@@ -304,6 +329,7 @@ TEST_F(DpramReportsTest, EachItemOfTheBackgroundDataIsItsSource) {
   for (std::uint32_t at = DPRAM_PANEL_PORT; at < DPRAM_CS_BLOCKS + 2 * DPRAM_CS_STRIDE; at += 2) ram.write(at, 0x5555);
   servo_ticks(20);
   reports.choose_systems(2);
+  coordinate_systems[1].slots_short = true;          // bit 19 of word 3
   ASSERT_EQ(host("I50=1 I49=1 I5293=$812345"), "");  // from the next servo interrupt on there is no time base
   background(kSettling);
   ASSERT_TRUE(reports.read_systems(5));
@@ -327,6 +353,7 @@ TEST_F(DpramReportsTest, EachItemOfTheBackgroundDataIsItsSource) {
   for (unsigned axis = 0; axis < 9; ++axis) EXPECT_EQ(reports.float_long(block + 4 * (6 + 2 * axis)), axis + 1.0);
   EXPECT_EQ(reports.item(block + 4 * 24), word(status, 1));
   EXPECT_NE(word(status, 0), word(status, 1));
+  EXPECT_NE(word(status, 2), word(status, 1));
   EXPECT_EQ(host("&2PR"), std::to_string(reports.item(block + 4 * 25)));
   EXPECT_GT(reports.item(block + 4 * 25), 0U);
   // 1000 ms and 100 ms to stop, less at most 20 servo cycles of 0.6 x 0.443 ms.
@@ -337,6 +364,21 @@ TEST_F(DpramReportsTest, EachItemOfTheBackgroundDataIsItsSource) {
   EXPECT_EQ(host("&2PE"), "P0:" + std::to_string(reports.item(block + 4 * 28)));
   EXPECT_GT(reports.item(block + 4 * 28), 0U);
   for (std::uint32_t at = block + 4 * 29; at < block + 128; at += 2) EXPECT_EQ(ram.read(at), 0x5555) << "spare " << at;
+}
+
+// host-bus:6.5/3, item 28: words of PROG 7, not of PROG 1 that has called it.
+TEST_F(DpramReportsTest, ThePlaceIsThatOfTheInnermostCall) {
+  for (const char* line : {"OPEN PROG 1 CLEAR", "CALL7", "CLOSE OPEN PROG 7 CLEAR", "TA0 TS0 TM1000", "X10", "CLOSE"})
+    ASSERT_EQ(host(line), "") << line;
+  ASSERT_EQ(host("&1B1R"), "");
+  servo_ticks(20);
+  reports.choose_systems(1);
+  ASSERT_EQ(host("I50=1 I49=1"), "");
+  background(kSettling);
+  const auto set = reports.read_systems(5);
+  ASSERT_TRUE(set);
+  EXPECT_EQ(host("PE"), "P1:0>P7:3");
+  EXPECT_EQ(set->systems[0].executing, 3U);
 }
 
 TEST_F(DpramReportsTest, ABoardWithoutAPanelShowsNoInputs) {
@@ -427,6 +469,16 @@ TEST_F(DpramReportsTest, MoreSystemsThanThereAreAreSixteen) {
   background(kSettling);
   EXPECT_NE(ram.read(DPRAM_CS_BLOCKS + 15 * DPRAM_CS_STRIDE + DPRAM_CS_TIME_BASE), 0);
   EXPECT_EQ(ram.read(DPRAM_COMMAND_CONTROL), 0x5A5A) << "what is behind the sixteenth";
+}
+
+// host-bus:6.5/2
+TEST_F(DpramReportsTest, TheCountIsTheLowByteOfItsWord) {
+  const auto time_base = [](unsigned cs) { return DPRAM_CS_BLOCKS + (cs - 1) * DPRAM_CS_STRIDE + DPRAM_CS_TIME_BASE; };
+  for (unsigned cs = 1; cs <= 16; ++cs) ram.write(time_base(cs), 0x5555);
+  ram.write(DPRAM_BACKGROUND_COUNT, 0xFF02);
+  ASSERT_EQ(host("I50=1 I49=1"), "");
+  background(kSettling);
+  for (unsigned cs = 1; cs <= 16; ++cs) EXPECT_EQ(ram.read(time_base(cs)) == 0x5555, cs > 2) << cs;
 }
 
 TEST_F(DpramReportsTest, OffWithoutRamOrBase) {

@@ -126,6 +126,17 @@ TEST_F(DpramVariables, EntriesAreWrittenAndTheSizeIsCleared) {
   EXPECT_EQ(host("RY$24"), "5") << "an address of 0 ends the list";
 }
 
+TEST_F(DpramVariables, ThirtyTwoEntriesAreWrittenInOnePass) {
+  for (const unsigned size : {32U, 33U}) {
+    for (unsigned i = 0; i < 33; ++i) ASSERT_EQ(host("WY" + std::to_string(0xA000 + i) + ",5"), "");
+    for (unsigned i = 0; i < size; ++i) write_entry(i, 0xA000 + i, kY, i);
+    write(size);
+    EXPECT_EQ(ram.read(DPRAM_WRITE_SIZE), 0);
+    for (unsigned i = 0; i < size; ++i)
+      EXPECT_EQ(host("RY" + std::to_string(0xA000 + i)), std::to_string(size == 32 ? i : 5)) << size << " entry " << i;
+  }
+}
+
 TEST_F(DpramVariables, VariablesAreReachedWhereTheyStand) {
   write_entry(0, 0x6005, kLong, 0x000801, 0x400000);  // 0.5 x 2^2, firmware:1.6
   write(1);

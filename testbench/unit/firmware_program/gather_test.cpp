@@ -114,14 +114,15 @@ TEST_F(Gather, ASampleThatEndsWithHalfAWordDoesNotGoBehindTheBuffer) {
 // 48 bits begin a long word of their own: 24, 48 take two, and 24 more a third.
 TEST_F(Gather, ALongSourceTakesAWholeWordBetweenShortOnes) {
   ASSERT_EQ(host("DEF UBUF 10"), "");
-  for (const auto& [mask, lines] : {std::pair{"3", 4U}, std::pair{"7", 3U}}) {
-    ASSERT_EQ(host("DEL GAT WX$107F6,$555555 I5001=$400000 I5002=$800020 I5003=$400000 I5049=1"), "");
-    ASSERT_EQ(host(std::string("I5050=") + mask + " DEF GAT 4 GATHER"), "");
-    servo_ticks(20);
-    EXPECT_FALSE(gathers());
-    EXPECT_EQ(host_lines("LIST GATHER").size(), lines);
-    EXPECT_EQ(host("RHX$107F6"), "555555");
-  }
+  for (const char* size : {"4", "5"})
+    for (const auto& [mask, lines] : {std::pair{"3", 4U}, std::pair{"7", 3U}}) {
+      ASSERT_EQ(host("DEL GAT WX$107F6,$555555 I5001=$400000 I5002=$800020 I5003=$400000 I5049=1"), "");
+      ASSERT_EQ(host(std::string("I5050=") + mask + " DEF GAT " + size + " GATHER"), "");
+      servo_ticks(20);
+      EXPECT_FALSE(gathers());
+      EXPECT_EQ(host_lines("LIST GATHER").size(), lines) << mask << " in " << size;
+      EXPECT_EQ(host("RHX$107F6"), "555555");
+    }
 }
 
 // host-bus:6.8/5: DEFINE GATHER begins anew, and the pointers show it before anything is gathered.

@@ -275,6 +275,7 @@ TEST_F(LiveWords, EightMotorsAreThoseOfTheGroup) {
   };
   ASSERT_EQ(host("I3=2 M1->D:$8B M2->D:$48B M5->D:$88 M6->D:$488"), "");
   ASSERT_EQ(host("M1=3072*5 M2=3072*6 M5=3072*14 M6=3072*18 I60=0 I61=0 I900=1"), "");
+  ASSERT_EQ(host("I109=48"), "");  // what is reported is in counts, whatever Ixx09 is
   motors_active = 0x101;
   motors[0].actual += 3072 * 7;
   motors[8].actual += 3072 * 8;

@@ -146,11 +146,12 @@ TEST_F(CommunicationsProcessorTest, WhatStopsThingsWaitsForNobody) {
   request(2, packet(Packet::kSendControl, "", 0x12));  // ^R in its turn
   request(3, packet(Packet::kSendControl, "", 0x01));
   request(4, packet(Packet::kControlResponse, "", 0x0B, 0, 0xC0));
+  for (const unsigned c : {0x04u, 0x0Fu, 0x11u}) request(5, packet(Packet::kSendControl, "", c));
   run(10 * kMs);
-  EXPECT_EQ(seen, "\x01\x0B");
-  EXPECT_EQ(take(), (Replies{{3, "@"}, {4, "\x06"}}));
+  EXPECT_EQ(seen, "\x01\x0B\x04\x0F\x11");
+  EXPECT_EQ(take(), (Replies{{3, "@"}, {4, "\x06"}, {5, "@"}, {5, "@"}, {5, "@"}}));
   run(500 * kMs);
-  EXPECT_EQ(seen, "\x01\x0B\x12");
+  EXPECT_EQ(seen, "\x01\x0B\x04\x0F\x11\x12");
 }
 
 TEST_F(CommunicationsProcessorTest, AStopDoesNotComeBeforeTheLineOfTheSameClient) {
@@ -163,11 +164,13 @@ TEST_F(CommunicationsProcessorTest, AStopDoesNotComeBeforeTheLineOfTheSameClient
     order += line;
     return "\x06";
   };
-  request(1, packet(Packet::kSendLine, "#1J+"));
+  const Bytes line = "#1J+" + Bytes(200, ' ') + "P1=1";
+  request(1, packet(Packet::kGetResponse, line));
   run(kMs / 100);
+  EXPECT_EQ(order, "") << "it is still on its way";
   request(1, packet(Packet::kSendControl, "", 0x01));
   run(10 * kMs);
-  EXPECT_EQ(order, "#1J+\x01");
+  EXPECT_EQ(order, line + "\x01");
 }
 
 // ethernet:6/3, ethernet:6/4

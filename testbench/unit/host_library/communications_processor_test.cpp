@@ -147,10 +147,19 @@ TEST_F(CommunicationsProcessorTest, ChecksumsReachNobody) {
     if (line.find('=') != Bytes::npos) return "\x06" + behind;
     return "5\r" + (sums ? Bytes(1, static_cast<char>(text)) : "") + "\x06" + behind;
   };
-  for (const char* line : {"P1=5", "I4=1", "P1=5", "P1=6", "I4=1", "P1=7"}) EXPECT_EQ(response(line), "\x06") << line;
-  EXPECT_EQ(response("P1"), "5\r\x06");
-  run(100 * kMs);
-  EXPECT_EQ(ready(), Bytes("\0\0", 2));
+  for (const bool pauses : {false, true}) {
+    make({});
+    sums = false;
+    for (const char* line : {"P1=5", "I4=1", "P1=5", "P1=6", "I4=1", "P1=7"}) {
+      EXPECT_EQ(response(line), "\x06") << line;
+      if (!pauses) continue;
+      run(10 * kMs);
+      EXPECT_EQ(ready(), Bytes("\0\0", 2)) << line;
+    }
+    EXPECT_EQ(response("P1"), "5\r\x06");
+    run(100 * kMs);
+    EXPECT_EQ(ready(), Bytes("\0\0", 2));
+  }
 }
 
 // ------------------------------------------------------------------------------------------------------- WRITEBUFFER
@@ -231,12 +240,14 @@ TEST_F(CommunicationsProcessorTest, MemoryAtAnyOffset) {
   EXPECT_EQ(ask(packet(Packet::kSetMemory, "abcdef", 0x1141, 0, 0xC0)), "\xC0");
   EXPECT_EQ(ask(packet(Packet::kGetMemory, "", 0x1140, 0, 0xC0, 8)), Bytes("\0abcdef\0", 8));
   EXPECT_EQ(ask(packet(Packet::kGetMemory, "", 0x1142, 0, 0xC0, 3)), "bcd");
+  EXPECT_EQ(ask(packet(Packet::kGetMemory, "", 0x1141, 0, 0xC0, 3)), "abc");
   EXPECT_EQ(ask(packet(Packet::kSetMemory, "xyz", 0xFFFE, 0)), "@");
   EXPECT_EQ(ask(packet(Packet::kGetMemory, "", 0xFFFD, 0, 0xC0, 5)), Bytes("\0xy\0\0", 5)) << "the end of 64 KiB";
   EXPECT_EQ(ask(packet(Packet::kGetMemory, "", 0, 0, 0xC0, 65535)).size(), 1400u);
   make({8192, false});
   EXPECT_EQ(ask(packet(Packet::kSetMemory, "xyz", 0x3FFF, 0)), "@");
   EXPECT_EQ(ask(packet(Packet::kGetMemory, "", 0x3FFE, 0, 0xC0, 4)), Bytes("\0x\0\0", 4)) << "the end of 16 KiB";
+  for (const unsigned beyond : {0x4000u, 0x10000u}) EXPECT_EQ(fake().memory[beyond], 0) << "lost, " << beyond;
 }
 
 TEST_F(CommunicationsProcessorTest, BitsOfThirtyTwo) {
@@ -268,6 +279,7 @@ TEST_F(CommunicationsProcessorTest, PortsAreTheSixteenBytes) {
   EXPECT_EQ(ask(packet(Packet::kPort, "", 0x10, 0x55)), "@");
   EXPECT_EQ(ask(packet(Packet::kPort, "", 0x10, 0, 0xC0)), kNul);
   EXPECT_EQ(ask(packet(Packet::kPort, "", 0, 0)), "@") << "all requests off";
+  EXPECT_EQ(fake().io[0] & 1, 1) << "RREQ is on again at once: programs send unasked";
   EXPECT_EQ(response("ver"), "ver\r\x06");
 }
 
@@ -299,6 +311,15 @@ TEST_F(CommunicationsProcessorTest, TextsOfProgramsGoToTheClientThatHasTalkedLas
   request(2, packet(Packet::kReadReady));
   run();
   EXPECT_EQ(take(), (Replies{{2, Bytes(2, '\0')}}));
+  request(2, packet(Packet::kGetResponse, "=2"));
+  run(10 * kMs);
+  EXPECT_EQ(take(), (Replies{{2, "\x06"}}));
+  fake().to_host.insert(fake().to_host.end(), text.begin(), text.end());
+  run(10 * kMs);
+  EXPECT_EQ(ready(), Bytes("\0\0", 2)) << "client 2 has talked last";
+  request(2, packet(Packet::kGetBuffer));
+  run(10 * kMs);
+  EXPECT_EQ(take(), (Replies{{2, "HELLO\r"}}));
 }
 
 // Nobody will answer until the next start.

@@ -166,6 +166,8 @@ TEST_F(CommunicationsTimes, WhatWasGivenUpIsClearedAwayForTenMilliseconds) {
   EXPECT_EQ(response("silent"), kNul);
   expect_to_take(
       10 * kMs, [this] { return response("ver"); }, "ver\r\x06");
+  expect_to_take(
+      0, [this] { return response("ver"); }, "ver\r\x06");
 }
 
 // -------------------------------------------------------------------------------------------------- no acknowledge
@@ -227,6 +229,9 @@ TEST_F(CommunicationsTimes, AMarkBehindAnAnswerWithAnEndIsDropped) {
   fake().thinking = 0;
   for (int i = 0; i < 3; ++i) EXPECT_EQ(response("ver"), "ver\r\x06");
   EXPECT_EQ(marks_, 6) << "nothing is asked that is answered at once";
+  fake().thinking = 4 * kMs;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(response("ver"), "ver\r\x06");
+  EXPECT_EQ(marks_, 6) << "nor within 5 ms";
 }
 
 // After I3 = 0 has ended a line that takes long is waited for as ever.
@@ -248,6 +253,13 @@ TEST_F(CommunicationsTimes, AChecksumOfNulIsNoMark) {
   EXPECT_EQ(response("P1 P2"), line + other);
   fake().thinking = 20 * kMs;  // the mark has been asked for when the checksum comes
   for (int i = 0; i < 2; ++i) EXPECT_EQ(response("P1 P2"), line + other);
+  fake().thinking = 0;
+  fake().controller = [&](const Bytes&) {  // what follows the checksum comes half a millisecond later
+    fake().later.emplace_back(bus_.now() + 20 * kMs, line + Bytes(1, '\0'));
+    fake().later.emplace_back(bus_.now() + 20 * kMs + kMs / 2, other + static_cast<char>('5' + '\r'));
+    return Bytes();
+  };
+  EXPECT_EQ(response("P1 P2"), line + other);
 }
 
 }  // namespace

@@ -160,6 +160,11 @@ TEST(OutputQueue, LongAnswersInPiecesOfOneSize) {
   queue.add("\x07" + Bytes(1400, 'x') + "\r\x06");
   EXPECT_EQ(queue.take_answer(1400)->size(), 1400u);
   EXPECT_EQ(queue.take_answer(1400), "x\r") << "BEL was in the piece before";
+  EXPECT_EQ(queue.take_line(1400), "\x06");
+  queue.add("\x07" + Bytes(1399, 'x'));
+  EXPECT_EQ(queue.take_answer(1400)->size(), 1400u);
+  queue.add("x\r\x06");
+  EXPECT_EQ(queue.take_answer(1400), "x\r") << "also of a piece that was all there was";
 }
 
 TEST(OutputQueue, LinesEndAtReturnAcknowledgeOrLineFeed) {

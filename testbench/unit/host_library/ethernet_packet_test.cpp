@@ -88,6 +88,7 @@ TEST(EthernetPackets, ZerosBehindARequestWithoutDataAreDropped) {
     const Bytes all = control + zeros + kVersion;
     ASSERT_EQ(packets_of({all.substr(0, cut), all.substr(cut)}).size(), 2u) << "cut at byte " << cut;
   }
+  EXPECT_EQ(packets_of({control + "xyz" + kVersion}).size(), 2u) << "whatever they are, in the same segment";
   EXPECT_EQ(packets_of({control, "x" + kVersion, kVersion}).size(), 2u) << "nothing but zeros";
   EXPECT_EQ(packets_of({kVersion, zeros + kVersion, kVersion}).size(), 2u) << "behind data";
 }
@@ -111,6 +112,17 @@ TEST(EthernetPackets, AnUnknownRequestAndALengthThatLiesEndTheStream) {
     EXPECT_EQ(reader.waiting(), 0u) << "nothing is kept";
   }
   EXPECT_EQ(packets_of({header(0x40, 0xBF, 0, 0, 1492) + Bytes(1492, 'x')}).size(), 1u);
+}
+
+// ethernet:3/6
+TEST(EthernetPackets, RequestsThatAreKnownByNameOnlyAreUnknown) {
+  for (const unsigned code : {0xB7, 0xB8, 0xB9, 0xBC, 0xBD, 0xC0, 0xC1, 0xC3, 0xC8, 0xC9, 0xCA, 0xD0})
+    for (const unsigned type : {0x40u, 0xC0u}) {
+      PacketReader reader;
+      reader.take(header(type, code, 0, 0, 0) + kVersion);
+      EXPECT_EQ(packets(reader).size(), 0u) << std::hex << type << ' ' << code;
+      EXPECT_NE(reader.broken(), "") << std::hex << type << ' ' << code;
+    }
 }
 
 TEST(EthernetPackets, AHalfPacketIsAllThatIsKept) {
