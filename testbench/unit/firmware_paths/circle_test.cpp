@@ -157,6 +157,9 @@ TEST(Circle, WhatIsNoArc) {
   EXPECT_EQ(circle_of(&line, &c), CIRCLE_IMPOSSIBLE);  // the end is
   line = with_radius(line_of({0, 0, 0}, {1, 0, 0}), 0);
   EXPECT_EQ(circle_of(&line, &c), CIRCLE_IMPOSSIBLE);
+  line = with_centre(line_of({0, 0, 0}, {1, 1, 0}), 1, 0);
+  line.normal[2] = 0;
+  EXPECT_EQ(circle_of(&line, &c), CIRCLE_STRAIGHT);  // no plane
 }
 
 TEST(Circle, UnequalRadiiMakeASpiral) {

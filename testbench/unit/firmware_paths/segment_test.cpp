@@ -75,6 +75,50 @@ TEST_F(Segments, BlendedMovesKeepTheirTrajectory) {
   for (unsigned motor = 0; motor < 3; ++motor) EXPECT_EQ(motors[motor].trajectory, 0);
 }
 
+// motion:7.1/1: taken when the sequence begins.
+TEST_F(Segments, AnotherIsx13IsForTheNextSequence) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=10"), "");
+  store({"TM100 TA40 TS10", "X3"});
+  const auto changes = changes_of({{3000, 100, 40, 10}}, 40);
+  const Spline x([&](double t) { return way(changes, t); }, 140, 10);
+  const double end = run([&](double t) {
+    if (t < kTickMs) { EXPECT_EQ(host("I5113=25"), ""); }
+    ASSERT_NEAR(at(1), x.at(t), 4 / kUnit) << t;
+  });
+  EXPECT_NEAR(end, 140 + 2 * 10, kTickMs);
+  store({"X0"});
+  EXPECT_NEAR(run(), 150 + 2 * 25, kTickMs);
+}
+
+// motion:7.1/1: no segments, arcs are straight.
+TEST_F(Segments, VirtualAxesHaveNone) {
+  ASSERT_EQ(host("I5113=10"), "");
+  store({"CIRCLE1 TM100 TA20 TS0 X2 Y2 I2 J0"});
+  ASSERT_EQ(host("&1B1R"), "");
+  for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+  platform::servo_ticks(ticks_of(60));
+  ASSERT_EQ(host("A"), "");
+  platform::real_time();
+  EXPECT_NEAR(cs().position[AXIS_X], 1, 0.02);
+  EXPECT_NEAR(cs().position[AXIS_Y], cs().position[AXIS_X], 1e-9);
+}
+
+// motion:7.1/9: the line that calls, and the one that has been called.
+TEST_F(Segments, PeShowsTheLineFromWhichItWasCalledToo) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=5"), "");
+  store({"X1", "X2"}, 2);
+  store({"TM100 TA20 TS0", "CALL2", "X3"});
+  std::vector<std::string> seen;
+  run([&](double) {
+    const std::string line = host("&1PE");
+    if (seen.empty() || seen.back() != line) seen.push_back(line);
+  });
+  const std::vector<std::string> lines = {"P1:3>P2:0", "P1:3>P2:1", "P1:4"};  // statements: TM, TA, TS, CALL, X
+  EXPECT_EQ(seen, lines);
+}
+
 // A change of velocity that is longer than what the move before has left of its own: that much of it.
 TEST_F(Segments, ABlendHasTheRoomOfTheMoveBefore) {
   fit({"1000X"});
@@ -336,6 +380,18 @@ TEST_F(Segments, CentripetalLimit) {
   EXPECT_NEAR(run(), std::ceil(std::hypot(kPi * 7.5, 5) / std::sqrt(40 * 5) * 200) * 5 + 10, kTickMs);
 }
 
+// motion:7.2/8: the way out of the plane counts, whichever axis goes it.
+TEST_F(Segments, AHelixTakesTheTimeOfItsWayInEachPlane) {
+  fit({"1000X", "1000Y", "1000Z"});
+  ASSERT_EQ(host("I5113=5 I5190=1000"), "");
+  const double time = std::hypot(kPi * 10, 8) / 100 * 1000;
+  for (const char* arc : {"NORMAL K-1 CIRCLE1 X0 Y20 Z8 I0 J10 K0", "NORMAL I1 CIRCLE1 Y0 Z20 X8 I0 J0 K10",
+                          "NORMAL J1 CIRCLE1 Z0 X20 Y8 I10 J0 K0"}) {
+    store({"F100 TA0 TS0 INC", arc});
+    EXPECT_NEAR(run(), std::ceil(time / 5) * 5 + 10, kTickMs) << arc;
+  }
+}
+
 // Q and `/`: the end of the executing move; R goes on with the next.
 TEST_F(Segments, QuitStopsAtTheEndOfTheExecutingMove) {
   for (const char* command : {"&1Q", "&1/"}) {
@@ -438,6 +494,31 @@ TEST_F(Segments, SynchronousAssignmentsComeWithTheirMove) {
   EXPECT_NEAR(times[2], 100, 10);  // the blend begins there
   platform::servo_ticks(3);
   EXPECT_EQ(m_variable_read(1), 4) << "behind the last move";
+  ASSERT_EQ(host("I5113=20"), "");
+  store({"TM110 TA20 TS0 M1=0", "M1==1 X1", "M1==2 X2"});
+  double last = 0;
+  run([&](double t) {
+    if (m_variable_read(1) < 2) last = t;
+  });
+  EXPECT_NEAR(last, 120, 3) << "its blend begins at 110, in the segment from 100, which begins 20 ms later";
+}
+
+// motion:7.3/4: without lookahead 32 wait, the calculation of others waits for room.
+TEST_F(Segments, AssignmentsWaitForRoom) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=5 M1..60->* M1..60=0"), "");
+  Lines lines = {"TM100 TA20 TS0"};
+  for (int move = 0; move < 3; ++move) {
+    std::string line;
+    for (int i = 1; i <= 20; ++i) line += "M" + std::to_string(20 * move + i) + "==1 ";
+    lines.push_back(line);
+    lines.push_back("X" + std::to_string(move + 1));
+  }
+  store(lines);
+  run();
+  platform::servo_ticks(5);
+  for (int i = 1; i <= 60; ++i) EXPECT_EQ(m_variable_read(i), 1) << i;
+  EXPECT_EQ(std::stoul(host("??").substr(12, 6), nullptr, 16) >> 19 & 1, 0u) << "none is lost";
 }
 
 // The servo task gets a sequence when 12 ms of it are made, in lookahead too, however slowly that goes.

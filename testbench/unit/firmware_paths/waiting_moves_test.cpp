@@ -377,7 +377,8 @@ TEST_F(WaitingMoves, RoundingMakesNoCornerOfAMoveWithoutAWay) {
   } programs[] = {{{"TM50 X1", "Y2 F10", "X1"}, {true, false}},
                   {{"TM50 X1 Y0", "Y2 F10", "X1"}, {true, false}},
                   {{"TM50 X1", "Y0", "X3", "X4"}, {true, true, false}},
-                  {{"TM50 X1", "X1 Y0", "Y2 F10"}, {true, true}}};
+                  {{"TM50 X1", "X1 Y0", "Y2 F10"}, {true, true}},
+                  {{"INC X2", "ABS TM50 X3"}, {true}}};  // that with a way is before it
   for (const auto& p : programs)
     for (const char* off :
          {"P10=0.000000001 P11=0.000000001", "P10=0-0.000000001 P11=0.000000001", "P10=0.1 P11=0.1"}) {

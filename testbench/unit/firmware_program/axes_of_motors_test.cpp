@@ -31,6 +31,18 @@ TEST_F(AxesOfMotors, TurnsAreThoseOfABAndC) {
   for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(motors[i].trajectory, position(ends[i])) << i;
 }
 
+// motion:5.1/5: of two the lower one, by 0 as well.
+TEST_F(AxesOfMotors, TheLowestMotorOfAnAxisTellsTheTurn) {
+  for (const auto& [motor, end] : {std::pair{"I127", -9000.0}, {"I227", 27000.0}}) {
+    platform::power_up();
+    fit({"100A", "100A"});
+    ASSERT_EQ(host(std::string(motor) + "=36000"), "");
+    store({"TM100 TA20 TS0 A270"});
+    run();
+    for (unsigned i = 0; i < 2; ++i) EXPECT_EQ(motors[i].trajectory, position(end)) << motor << " " << i;
+  }
+}
+
 // Three axes of one motor, forwards, and back behind a jog.
 TEST_F(AxesOfMotors, ThreeAxesMakeAMotor) {
   fit({"1000X+500Y-200Z+10", "1000Y-500X", "-250Z", "100U-200V+300W"});
@@ -43,6 +55,17 @@ TEST_F(AxesOfMotors, ThreeAxesMakeAMotor) {
   EXPECT_NEAR(start(AXIS_X), 2, 1e-9) << "1000 dX + 500 dY = 1250, 1000 dY - 500 dX = 0, dZ = 0";
   EXPECT_NEAR(start(AXIS_Y), 2.5, 1e-9);
   EXPECT_NEAR(start(AXIS_Z), 3, 1e-9);
+  EXPECT_NEAR(start(AXIS_U), 1, 1e-9) << "one motor does not tell three axes";
+  EXPECT_NEAR(start(AXIS_V), 2, 1e-9);
+}
+
+// motion:5.1/2: to the nearest 1/3072 count.
+TEST_F(AxesOfMotors, PositionsAreRounded) {
+  fit({"0.3X", "0.2X", "-0.3X", "-0.2X"});
+  store({"LINEAR TM100 TA20 TS0 X1"});
+  run();
+  const int ends[] = {922, 614, -922, -614};  // 921.6 and 614.4
+  for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(motors[i].trajectory, ends[i]) << i;
 }
 
 TEST_F(AxesOfMotors, DistancesBehindATriggerAddUp) {

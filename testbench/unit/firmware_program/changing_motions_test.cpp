@@ -107,6 +107,17 @@ TEST_F(ChangingMotions, AnAbortBeforeABlendBeginsAtTheVelocityOfItsMove) {
   ticks(50);
   ASSERT_EQ(host("A"), "");
   EXPECT_NEAR(ramp(1).from, 10.0, 0.01);
+  for (unsigned when = ticks_of(80) - 5; when < ticks_of(80) + 2; ++when) {  // it begins at 110 - 60 / 2 ms
+    platform::power_up();
+    SetUp();
+    store({"TM100 TA20 TS0 X1", "TA60 X3"});
+    begin();
+    platform::servo_ticks(when);
+    ASSERT_EQ(host("A"), "");
+    const Ramp is = ramp(1);
+    const double blended = (when + is.ticks) * kTickMs - 80;  // from 10 to 20 counts a ms within 60 ms
+    EXPECT_NEAR(is.from, 10.0 + std::max(blended, 0.0) * 10 / 60, 0.01) << when;
+  }
 }
 
 // motion:7.1/10: segments that the real-time task does not go on with, aborted within two interrupts of their end.

@@ -138,6 +138,19 @@ TEST_F(CubicMoves, SplineIsAUniformBSpline) {
   EXPECT_EQ(motors[0].trajectory, -3000 * 3072);
 }
 
+// motion:5.4/5: those of point n with the way to way point n - 1.
+TEST_F(CubicMoves, AssignmentsOfAPointComeWithTheWayToThePointBefore) {
+  fit({"1000X"});
+  ASSERT_EQ(host("M1->X:$10F0,0,24 M1=0"), "");
+  store({"SPLINE1 TM40", "M1==1 X1", "M1==2 X3", "M1==3 X2"});
+  double last[3] = {};  // before the first, the second, the third
+  run([&](double t) {
+    for (int n = 0; n < 3; ++n)
+      if (m_variable_read(1) <= n) last[n] = t;
+  });
+  for (int n = 0; n < 3; ++n) EXPECT_NEAR(last[n], 40 * n, 5 * kTickMs) << n;
+}
+
 TEST_F(CubicMoves, SplineOfOnePoint) {
   fit({"1000X"});
   store({"SPLINE1 TM50 X1"});

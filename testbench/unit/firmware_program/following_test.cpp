@@ -55,6 +55,9 @@ TEST_F(Following, JogsGoToPlacesOfTheMotorOrBesideTheMaster) {
     begin(1);
     ASSERT_EQ(host("I106=0"), "");
     EXPECT_NEAR(after(c.line), c.normal, 1e-9) << c.line << ", following turned off";
+    begin(3);
+    ASSERT_EQ(host("I106=2"), "");
+    EXPECT_NEAR(after(c.line), c.offset, 1e-9) << c.line << ", in offset mode";
   }
 }
 

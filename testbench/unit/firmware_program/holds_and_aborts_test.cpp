@@ -260,6 +260,33 @@ TEST_F(HoldsAndAborts, StepsByLine) {
   ticks(150);
   EXPECT_EQ(at_end(1), 1.0);
   EXPECT_EQ(motors[0].trajectory, position(1000)) << "to the next move";
+  const Lines blocks = {"BLOCKSTART", "P1=4", "BLOCKSTOP", "BLOCKSTART", "X3", "X4", "BLOCKSTOP", "P1=5"};
+  Lines lines = {"P1=2 DWELL5", "P1=3 X2"};
+  lines.insert(lines.end(), blocks.begin(), blocks.end());
+  store(lines, 2);
+  ASSERT_EQ(host("&1B2"), "");
+  for (const auto& [p1, end] : {std::pair{2, 1000}, {3, 2000}, {4, 2000}, {4, 4000}}) {
+    ASSERT_EQ(host("S"), "");
+    ticks(200);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(at_end(1), p1);
+    EXPECT_EQ(motors[0].trajectory, position(end)) << "to a DWELL, a move, a BLOCKSTOP, all of a block";
+  }
+}
+
+// During a step S changes nothing: it is no stop that a motor has to come back to.
+TEST_F(HoldsAndAborts, AStepInAStepNeedsNoWayBack) {
+  store({"INC TM100 TA20 TS0 X1", "X1", "X1"});
+  begin("&1B1S");
+  ticks(30);
+  ASSERT_EQ(host("S"), "");
+  ticks(200);
+  ASSERT_EQ(motors[0].trajectory, position(1000));
+  ASSERT_EQ(host("#1J:100"), "");
+  ticks(200);
+  EXPECT_EQ(host("R"), "");
+  ticks(400);
+  EXPECT_EQ(motors[0].trajectory, position(3100));
 }
 
 // Into a limit that the motor stands in no jog goes, out of it each (motion:6.2/3); a search for home goes, too.

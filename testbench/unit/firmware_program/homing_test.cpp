@@ -25,7 +25,7 @@ using platform::host;
 
 constexpr double kUnits = 32 * 96;
 constexpr std::uint32_t kStatus = 0x78000, kServoCounter = 0x78002, kCaptured = 0x78003, kParallel = 0x10F0,
-                        kWord = 0xFFFFFF;
+                        kAdc = 0x78015, kWord = 0xFFFFFF;
 constexpr std::uint32_t kCaptureFlag = 1u << 11;
 constexpr unsigned kPartsOfACount = 4096;
 
@@ -235,6 +235,27 @@ TEST_F(Homing, StatusOfASearch) {
   EXPECT_FALSE(motors[0].status.timed_move);
 }
 
+// motion:4.2/3: Ixx92 passes behind a trigger, too.
+TEST_F(Homing, TheSearchGoesOnForIxx92BehindItsTrigger) {
+  ASSERT_EQ(host("I123=20 I192=20"), "");
+  begin(0);
+  ASSERT_EQ(host("#1HM"), "");
+  run(200);
+  trigger_at(place() + 1);
+  for (unsigned i = 0; i < 10 && !motors[0].status.home_complete; ++i) tick();
+  ASSERT_TRUE(motors[0].status.home_complete);
+  const double ms = platform::kDefaultI10 / 8388608.0;
+  double last = place();
+  for (unsigned i = 1; i * ms < 20 - ms; ++i, last = place()) {
+    tick();
+    ASSERT_NEAR(place() - last, 20 * ms, 1.0 / 16) << i;
+  }
+  run(20);
+  last = place();
+  tick();
+  EXPECT_LT(place() - last, 20 * ms - 1);
+}
+
 TEST_F(Homing, ASearchThatIsStoppedEndsWithoutHome) {
   begin(0);
   for (const char* stop : {"J/", "K", "J=0", "\x01"}) {
@@ -331,9 +352,12 @@ TEST_F(Homing, AbsolutePositionAtPowerOn) {
   ASSERT_EQ(host("$*"), "");
   EXPECT_EQ(motors[0].loop, LOOP_KILLED);
   EXPECT_FALSE(motors[0].status.home_complete);
+  platform::servo_ticks(1);   // what had been latched before
   *hal_x(kServoCounter) = 0;  // as the IC has it from now on
-  platform::servo_ticks(3);
+  platform::servo_ticks(1);
   EXPECT_EQ(host("#1P"), "0") << "the cleared counter is no movement";
+  EXPECT_EQ(motors[0].velocity, 0);
+  platform::servo_ticks(1);
   *hal_x(kServoCounter) = 2 * 7;
   platform::servo_ticks(1);
   EXPECT_EQ(host("#1P"), "7");
@@ -378,6 +402,10 @@ TEST_F(Homing, SensorsAreReadAtEachStart) {
   EXPECT_EQ(host("#1P"), "0");
   EXPECT_TRUE(motors[0].status.home_complete);
   EXPECT_FALSE(motors[1].status.home_complete) << "Ixx80 bit 2";
+  *hal_y(kAdc) = 123456;  // no start clears it
+  ASSERT_EQ(host("I110=$78015 I126=160 SAVE"), "");
+  platform::reset();
+  EXPECT_EQ(host("#1P"), "123446") << "less Ixx26";
 }
 
 TEST_F(Homing, WhileItMovesNoReferenceIsTaken) {

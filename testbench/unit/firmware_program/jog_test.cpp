@@ -364,6 +364,13 @@ TEST_F(Jog, TimeIsThatOfTheCoordinateSystem) {
   const double before = position();
   for (int i = 0; i < 100; ++i) step();
   EXPECT_NEAR(position() - before, 100 * (platform::kDefaultI10 / 2.0) / kTimeUnits * 10, kTolerance) << "50 %";
+  motors[0].cs = 1;
+  coordinate_systems[1].increment = platform::kDefaultI10 / 4;
+  coordinate_systems[1].increment_slew = INT32_MAX;
+  step();
+  const double other = position();
+  for (int i = 0; i < 100; ++i) step();
+  EXPECT_NEAR(position() - other, 100 * (platform::kDefaultI10 / 4.0) / kTimeUnits * 10, kTolerance) << "25 % of &2";
 }
 
 TEST_F(Jog, HoldStopsWhatAProgramMovesAndNothingElse) {

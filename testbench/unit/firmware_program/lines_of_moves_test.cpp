@@ -98,6 +98,17 @@ TEST_F(LinesOfMoves, TwoJumpsBackBreakBlending) {
   EXPECT_NEAR(run(), 240, 2 * kTickMs) << "one is not enough";
 }
 
+// motion:5.5/3
+TEST_F(LinesOfMoves, VirtualAxesGoRapidAtTheFeedrate) {
+  store({"F100 TA20 TS0 RAPID X3", "X6"});
+  EXPECT_NEAR(run(), 2 * (30 + 20), 2 * kTickMs) << "they do not blend";
+  EXPECT_EQ(cs().position[AXIS_X], 6.0);
+  store({"RAPID X7^0.5"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(9);
+  EXPECT_EQ(host("RY$2014"), "1");
+}
+
 // motion:5.2/5
 TEST_F(LinesOfMoves, ArcsWithoutSegmentsAreStraight) {
   fit({"1000X", "1000Y"});

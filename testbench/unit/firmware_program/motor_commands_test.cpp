@@ -144,6 +144,12 @@ TEST_F(MotorCommands, AMotorOfARunningProgramIsThePrograms) {
   coordinate_systems[0].running = true;
   for (const char* line : {"#1J+", "J/", "J=1", "HM", "HMZ", "K", "O1", "$", "$*"})
     EXPECT_EQ(host(line), "ERR001") << line;
+  ASSERT_EQ(host("I100=0"), "");
+  EXPECT_EQ(host("J+"), "ERR013") << "it comes first";
+  ASSERT_EQ(host("I100=1"), "");
+  status_show(STATUS_NO_PHASE_CLOCK, true);
+  EXPECT_EQ(host("J+"), "ERR001") << "before ERR018";
+  status_show(STATUS_NO_PHASE_CLOCK, false);
   coordinate_systems[0].held = true;
   EXPECT_EQ(host("J=1"), "ERR001") << "not at rest yet";
   coordinate_systems[0].increment = coordinate_systems[0].increment_target = 0;
@@ -169,6 +175,10 @@ TEST_F(MotorCommands, OpenLoopTakesPerCentOfIxx69) {
   EXPECT_EQ(motors[0].open_output, 10000 * 256);
   ASSERT_EQ(host("O-12.5"), "");
   EXPECT_EQ(motors[0].open_output, -2500 * 256);
+  for (const int sign : {1, -1}) {
+    ASSERT_EQ(host(sign > 0 ? "O100" : "O-100"), "");
+    EXPECT_EQ(motors[0].open_output, sign * 20000 * 256);
+  }
   ASSERT_EQ(host("J/"), "");
   EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
 }
@@ -259,9 +269,12 @@ TEST_F(MotorStops, ReferencesOfASystemAreThoseOfItsMotors) {
 }
 
 TEST_F(MotorStops, ControlAAbortsMotorsOfNoSystemToo) {
+  ASSERT_EQ(host("&3#6->X I600=1 I611=0 I615=.5 I619=1 I620=0 I621=10 I622=20 I692=2 #6J+"), "");
+  run(200);
+  ASSERT_GT(step_of(5), 8);
   ASSERT_FALSE(control_character(0x01));
   run(150);
-  for (const unsigned motor : {0u, 1u, 2u, 3u}) {
+  for (const unsigned motor : {0u, 1u, 2u, 3u, 5u}) {
     EXPECT_EQ(step_of(motor), 0) << motor;
     EXPECT_EQ(motors[motor].loop, LOOP_CLOSED) << motor;
   }

@@ -31,6 +31,8 @@ TEST_F(StopsOfMotors, RunAsksForMotorsThatMayMove) {
   store({"X1"});
   motors[1].loop = LOOP_OPEN;
   EXPECT_EQ(host("&1B1R"), "ERR012");
+  EXPECT_EQ(host("B77R"), "ERR012") << "before ERR015";
+  ASSERT_EQ(host("B1"), "");
   motors[1].loop = LOOP_KILLED;
   EXPECT_EQ(host("S"), "ERR012");
   motors[1].loop = LOOP_CLOSED;
@@ -338,6 +340,7 @@ TEST_F(StopsOfMotors, PsetMovesTheOriginOfAxes) {
   EXPECT_EQ(motors[0].trajectory, position(4000)) << "one unit from there";
   EXPECT_EQ(motors[1].trajectory, position(20));
   EXPECT_EQ(motors[0].bias, position(-2000)) << "what reports add";
+  EXPECT_EQ(motors[1].bias, 0) << "its axis is not of the line";
   EXPECT_EQ(cs().position[AXIS_X], 2.0);
 }
 
