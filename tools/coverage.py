@@ -84,7 +84,8 @@ def gcov_lines(build):
 
 def rtl_points(data_files):
     """{(kind, file, line, what): times} of our RTL; kind is line, branch or toggle, times the most of any instance in
-    any life: the sum over lives would take a bit that rose in each and never fell for one that did both."""
+    any life: the sum over lives would take a bit that rose in each and never fell for one that did both. Names of files
+    may be relative to a folder of the build, as gcov's."""
     most = {}
     for data in data_files:
         for text in data.read_text().splitlines():
@@ -94,7 +95,7 @@ def rtl_points(data_files):
     points = {}
     for text, times in most.items():
         key = dict(part.split("\x02", 1) for part in text[3:-1].split("\x01") if part)
-        file = os.path.relpath(key["f"], ROOT)
+        file = os.path.relpath(key["f"], ROOT) if os.path.isabs(key["f"]) else re.sub(r"^(\.\./)+", "", key["f"])
         if file.startswith("rtl/"):
             kind = key["page"].split("/")[0].removeprefix("v_")
             point = kind, file, int(key["l"]), f"{key.get('n', '')} {key.get('o', '')}"

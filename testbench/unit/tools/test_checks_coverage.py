@@ -90,6 +90,16 @@ class Rows(Tree):
         self.run_tool("coverage.py", "--rows")
         self.assertNotIn("stale |", self.page())
 
+    def test_counters_name_their_source_from_the_tree_or_from_a_folder_of_the_build(self):
+        """The point of the one name is that of the other; a source that is not of the RTL has none."""
+        names = [f"{coverage.ROOT}/rtl/host/dpram.sv", "../../../rtl/host/dpram.sv", "../testbench/rig.sv"]
+        for i, name in enumerate(names):
+            key = {"f": name, "l": "7", "page": "v_line/dpram", "h": f"top.{i}"}
+            text = "".join(f"\x01{field}\x02{value}" for field, value in key.items())
+            self.write(f"{i}.dat", f"# SystemC::Coverage-3\nC '{text}' {3 + i}\n")
+        points = coverage.rtl_points(sorted(pathlib.Path(self.root).glob("*.dat")))
+        self.assertEqual(points, {("line", "rtl/host/dpram.sv", 7, " "): 4})
+
     def test_a_page_of_another_form_fails(self):
         self.write(PAGE, self.page().replace("| source of the RTL |", "|"))
         self.expect(self.run_tool("coverage.py", "--check"), 1, f"{PAGE}: no table of modules")
