@@ -81,7 +81,8 @@ TEST_F(LookaheadEnds, BackIsNotBeyondADwell) {
   expect_clean();
 }
 
-// motion:7.1/1: Isx13 counts when a sequence begins. One that waits at its corner and finds it 0 has segments of 1 ms.
+// motion:7.1/1: Isx13 counts when a sequence begins. One that waits at its corner, here for 100 real-time interrupts or
+// 133 ms, and finds it 0 has segments of 1 ms.
 TEST_F(LookaheadEnds, SegmentsThatAreSwitchedOffWhileACornerWaits) {
   ASSERT_EQ(host("I5183=0.9 I5185=0.9 I5182=100"), "");
   store({"TM200 TA20 TS0", "X5", "Y5"});

@@ -37,6 +37,7 @@ TEST_F(DpramCollisionTest, TwoReadsOfOneCellDoNotWait) {
   EXPECT_EQ(both.get("cpu_rdata"), 0x0101u);
   EXPECT_EQ(both.get("mem_rdata"), 0x0101u);
   host_end_read();  // and with the CPU first
+  EXPECT_NE(host_read(9), 0x0101u);
   host_start(8, true);
   both.ref();
   EXPECT_FALSE(host_busy());

@@ -35,7 +35,7 @@ constexpr Shape shape(unsigned ws, bool write) {
 constexpr TimeFs kTaSetup = 2 * kFsPerNs, kDataSetup = 5 * kFsPerNs;  // rows 118 and 104
 
 // host-bus:2.5, row 3.
-constexpr unsigned wait_states_of(unsigned i52) { return i52 <= 1 ? 4 : i52 <= 7 ? 3 : i52 <= 9 ? 4 : 7; }
+constexpr unsigned wait_states_of(unsigned i52) { return i52 <= 4 ? 4 : i52 <= 7 ? 3 : i52 <= 9 ? 4 : 7; }
 
 // From the fall of the strobe: when the CPU first looks at /TA, and how late write data may be.
 constexpr TimeFs ta_look(unsigned i52, unsigned ws, bool write) {
