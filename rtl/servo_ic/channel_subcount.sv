@@ -6,10 +6,9 @@
 module channel_subcount (
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
-  input  wire logic        enable_i,        // I7mn9
+  input  wire logic        enable_i,        // I7mn9, and the timers are not those of an MLDT
   input  wire logic        ce_i,            // SCLK
   input  wire logic        count_i,
-  input  wire logic        echo_i,          // MLDT changes T1: no estimate
   input  wire logic        reversed_i,      // this count reverses the direction: no estimate until the next one
   input  wire logic        down_i,          // direction of the last count
   input  wire logic        down_new_i,      // direction of this count
@@ -77,7 +76,7 @@ module channel_subcount (
       rest_q      <= 23'd0;
       e_q         <= 12'd0;
       lag_q       <= 5'd0;
-    end else if (count_i || echo_i || !enable_i) begin
+    end else if (count_i || !enable_i) begin
       valid_q     <= enable_i & count_i & ~reversed_i;
       full_q      <= 1'b0;
       steps_q     <= Steps;

@@ -110,7 +110,7 @@ module servo_channel (
   );
   channel_subcount u_subcount (
     .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
-    .enable_i(fine), .count_i(count), .echo_i(echo),
+    .enable_i(fine & (mode != brick_regs_pkg::DecodeMldt)), .count_i(count),
     .reversed_i(down ^ last_down), .down_i(last_down), .down_new_i(down), .t1_i(t1),
     .fraction_o(fraction), .fraction_d_o(fraction_d)
   );

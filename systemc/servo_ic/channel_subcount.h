@@ -28,9 +28,9 @@ class ChannelSubcount {
     for (; now_ < t && active() && (steps_ != 0 || lag_ != 0); now_ += kTicksPerRef) step(false);
     now_ = std::max(now_, t);
   }
-  // The SCLK edge t; a count or an MLDT echo leaves T1 as given.
-  void sclk(Tick t, bool enable, bool count, bool echo, bool reversed, std::uint32_t t1) {
-    if (count || echo || !enable) {
+  // The SCLK edge t; a count leaves T1 as given.
+  void sclk(Tick t, bool enable, bool count, bool reversed, std::uint32_t t1) {
+    if (count || !enable) {
       valid_ = count && enable && !reversed;
       steps_ = kSteps;
       lag_ = added_ = 0;

@@ -127,7 +127,7 @@ void ServoChannel::write(Tick now, bool sclk, bool x, unsigned offset, std::uint
       loss_ = (sclk && loss_now_) || (loss_ && status_bits::kEncoderLoss.is_set(value));
       break;
     case word(words::kControl):
-      subcount_.advance(now, fine());
+      subcount_.advance(now, has_fraction());
       control_ = (control_ & held) | (value & ~held & ~channel_control::kEquWrite.mask());
       if (channel_control::kEquWrite.is_set(value)) {
         equ_write_until_ = next_ref_edge(now);
@@ -157,7 +157,7 @@ void ServoChannel::latch_phase() {
 }
 
 void ServoChannel::latch_servo(Tick edge) {
-  subcount_.advance(edge - kTicksPerRef, fine());
+  subcount_.advance(edge - kTicksPerRef, has_fraction());
   counter_.latch_servo();
   servo_fraction_ = fraction();
 }
@@ -232,7 +232,7 @@ ChannelPosition ServoChannel::sclk(Tick edge, const ChannelPosition* channel1) {
   const unsigned pins = input_.level();
   const unsigned level = index_.level(pins, is(channel_control::kIndexDemux));
   const bool index = ChannelIndex::index(level, is(channel_control::kGatedIndex), is(channel_control::kGateState));
-  subcount_.advance(edge - kTicksPerRef, fine());
+  subcount_.advance(edge - kTicksPerRef, has_fraction());
 
   const ChannelDecode::Result d = decode_.step(ready, decode(), hold(), pins & 7, pfm_.event(), pfm_.down());
   pfm_.take_event();
@@ -243,7 +243,7 @@ ChannelPosition ServoChannel::sclk(Tick edge, const ChannelPosition* channel1) {
   const unsigned old_fraction = fraction();
   const bool reversed = d.down != counter_.down();
   counter_.sclk(d, hold());
-  subcount_.sclk(edge, fine(), d.count, d.echo, reversed, counter_.t1());
+  subcount_.sclk(edge, has_fraction(), d.count, reversed, counter_.t1());
   capture_.sclk(edge, ready, index, level, control_, hold() ? 0 : counter_.counter(),
                 d.count ? (d.down ? 4095 : 0) : old_fraction);
   error_now_ = d.error;

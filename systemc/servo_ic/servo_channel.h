@@ -138,6 +138,7 @@ class ServoChannel {
   bool is(const regs::Field& field) const { return field.is_set(control_); }
   std::uint32_t decode() const { return channel_control::kDecode.get(control_); }
   bool fine() const { return is(channel_control::kHardware1t); }
+  bool has_fraction() const { return fine() && decode() != regs::decode::kMldt; }
   unsigned fraction() const { return counter_.down() ? 4095 - subcount_.e() : subcount_.e(); }
   std::uint32_t status(bool trip) const;
 

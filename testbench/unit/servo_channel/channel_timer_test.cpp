@@ -236,11 +236,20 @@ TEST_F(ChannelMldtTest, TurnIsNotShownNothingCountsAndT2RunsOnWithoutAnEcho) {
       << "0 at the edge that found it";
 }
 
+// Nor is one left of the counts before, echo or none: e is 0, at the end of the cell at which they came in.
 TEST_F(ChannelMldtTest, HasNoFraction) {
-  control(1, decode_mode(regs::decode::kMldt) | kPfm | kFine);
-  for (int i = 0; i < 3; ++i) {
-    echo(50 * kSclk);
-    EXPECT_EQ(fine2::kServo.get(timer2()), 0u);
+  for (const bool up : {true, false}) {
+    control(1, kX4 | kFine);
+    steps(1, 4, up, 100 * kSclk);
+    const std::uint32_t none = up ? 0 : 4095;
+    ASSERT_NE(fine2::kServo.get(timer2()), none) << "it has one by now";
+    control(1, decode_mode(regs::decode::kMldt) | kPfm | kFine);
+    rig_.ticks(3 * kPhase);
+    EXPECT_EQ(fine2::kServo.get(timer2()), none) << (up ? "up" : "down") << ", no echo yet";
+    for (int i = 0; i < 3; ++i) {
+      echo(50 * kSclk);
+      EXPECT_EQ(fine2::kServo.get(timer2()), none) << (up ? "up" : "down");
+    }
   }
 }
 
