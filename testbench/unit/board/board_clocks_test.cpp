@@ -156,7 +156,7 @@ TEST_P(BoardOn, TwoDriversConflictWhenTheyHaveDisagreedForThreeTicks) {
   const Tick first = rig.edge(pin::kPhase, 0) - kNetDelay;
   rig.run(3 - kNetDelay);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
-  EXPECT_EQ(rig.edge(pin::kSourceConflict, 1) - first, 4);
+  EXPECT_EQ(rig.edge(pin::kSourceConflict, 1, kHandOver) - first, 4);
   rig.run(100'000);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u) << "until there is one driver again";
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 3));
@@ -182,12 +182,14 @@ TEST_P(BoardOn, LowestNumberedOfTwoDriversWinsAndTheConflictShows) {
 
 TEST_P(BoardOn, PhaseAndServoMayComeFromDifferentIcs) {
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 2));  // drives PHASE
+  rig.run(kHandOver);
+  EXPECT_EQ(rig.get(pin::kServo), 1u) << "idle beside a PHASE that is driven";
   rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 1, 1));  // drives SERVO from that PHASE
   rig.run(kHandOver);
   EXPECT_EQ(rig.get(pin::kPhaseSource), 0u);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
-  const Tick fall = rig.edge(pin::kServo, 0);
-  EXPECT_EQ(rig.edge(pin::kServo, 0) - fall, 2 * 13057);
+  const Tick fall = rig.edge(pin::kServo, 0, kHandOver);
+  EXPECT_EQ(rig.edge(pin::kServo, 0, kHandOver) - fall, 2 * 13057);
 }
 
 TEST_P(BoardOn, JumperE1TakesTheClocksFromOutside) {

@@ -45,9 +45,11 @@ TEST_F(SsiInputs, FollowTheirVariables) {
   start(HAL_PRODUCT_GEO_PMAC | HAL_PRODUCT_FEEDBACK_2);
   c.line("I1015=2 I1016=2 I1017=1 I1018=0 I1019=2");
   EXPECT_EQ(words(), (Words{4 * 1 + 2, 4 * 2 + 0, 2}));
+  c.line("I1018=3");
+  EXPECT_EQ(words(), (Words{4 * 1 + 2, 4 * 2 + 3, 2}));
   c.line("I1019=4 I1017=7");  // two bits
   EXPECT_EQ(c.line("I1017 I1019"), "3|0");
-  EXPECT_EQ(words(), (Words{4 * 3 + 2, 0, 2}));
+  EXPECT_EQ(words(), (Words{4 * 3 + 2, 3, 2}));
   c.line("I1015..1019=*");
   EXPECT_EQ(words(), (Words{0xF, 0xF, 0}));
 }

@@ -198,7 +198,8 @@ TEST(ClockSource, TakesDirectionVariablesOnly) {
   Controller c;
   for (const char* number : {"6807", "6857", "6907", "6957", "7007", "7107", "7907", "7257", "7957"})
     EXPECT_EQ(c.line(std::string("I19=") + number + " I19"), number);
-  EXPECT_EQ(c.line("I19=7008 I19"), "7957");
+  for (const char* none : {"7008", "7006", "7057", "7157", "6808", "7", "0"})  // there is no IC 0* and no 1*
+    EXPECT_EQ(c.line(std::string("I19=") + none + " I19"), "7957") << none;
   EXPECT_EQ(c.line("I19=* I19"), "7007");
 }
 

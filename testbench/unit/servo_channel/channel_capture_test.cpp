@@ -63,6 +63,9 @@ TEST_F(ChannelTest, SoftwareTriggerIsTheRiseOfItsBit) {
     control(1, idle | kIndexInvert);
     rig_.ticks(kHold);
     EXPECT_TRUE(status(1, status_bit::kCaptured));
+    rig_.read(1, words::kFlagPosition);
+    rig_.ticks(kHold);
+    EXPECT_FALSE(status(1, status_bit::kCaptured)) << "it stands";
   }
 }
 
@@ -221,6 +224,8 @@ TEST_F(ChannelTest, ChannelOneDrivesTheComparesOfTheOthers) {
   EXPECT_TRUE(equ(2));
   EXPECT_TRUE(equ(3));
   EXPECT_FALSE(equ(4)) << "own counter";
+  steps(4, 5, true);
+  EXPECT_TRUE(equ(4)) << "which has left 4 now";
 }
 
 }  // namespace

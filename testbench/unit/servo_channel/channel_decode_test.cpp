@@ -195,12 +195,18 @@ TEST_F(ChannelDecodeTest, OwnPulsesCountWithTheSignOfTheCommandOncePerSclk) {
   EXPECT_NEAR(counter(1), 100, 1);
 }
 
+// By no word of the channel but bit 10 of X:+5; X:+4 is the IC's.
 TEST_F(ChannelDecodeTest, CounterCannotBeSet) {
   control(1, kX4);
   steps(1, 3, true);
-  for (const regs::Register& word : {words::kPhasePosition, words::kServoPosition, words::kFlagPosition})
-    rig_.write(1, word, 0x123456);
-  EXPECT_EQ(counter(1), 3);
+  for (const bool x : {false, true})
+    for (unsigned offset = 0; offset < 8; ++offset) {
+      if (x && offset == words::kControl.address)
+        control(1, kX4);
+      else if (!x || offset != 4)
+        rig_.write(x, base(1) + offset, 0x123456);
+      EXPECT_EQ(counter(1), 3) << (x ? "X:+" : "Y:+") << offset;
+    }
 }
 
 // Neither position nor timers nor compares see what the encoder does while the counter is held.

@@ -133,5 +133,14 @@ TEST_F(ChannelFilterTest, LevelsFoundByAResetAreNoLossOfTheEncoder) {
   EXPECT_FALSE(status(1, status_bit::kEncoderLoss));
 }
 
+TEST_F(ChannelFilterTest, LevelsFoundByAResetCaptureNothing) {
+  rig_.in.pins.fill(1u << kHmfl);
+  rig_.reset();
+  control(1, kFlag);  // before the first level has come through
+  rig_.ticks(4 * kHold);
+  EXPECT_TRUE(status(1, status_bit::kHmfl));
+  EXPECT_FALSE(status(1, status_bit::kCaptured));
+}
+
 }  // namespace
 }  // namespace brick

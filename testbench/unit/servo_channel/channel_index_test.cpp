@@ -185,6 +185,7 @@ TEST_F(ChannelIndexTest, ChangingTheTriggerNeitherArmsNorDisarms) {
   arm();
   const std::uint32_t plim = kX4 | kFlag | field::kFlagSelect.at(regs::flag_select::kPlim);
   control(1, kX4 | kIndex);
+  rig_.ticks(kHold);
   control(1, plim);
   rig_.ticks(kHold);
   EXPECT_FALSE(status(1, status_bit::kCaptured));

@@ -107,6 +107,8 @@ TEST_F(ChannelTest, PfmRateAndWidth) {
   const Tick down = rise();
   EXPECT_TRUE(rig_.other(kDir, 2));
   EXPECT_EQ(rise() - down, 128 * 12);
+  control(2, kPfm | kInvertC);
+  EXPECT_TRUE(rig_.other(kDir, 2)) << "that bit is PULSE's";
   control(2, kPfm | kInvertDir | kInvertC);
   EXPECT_FALSE(rig_.other(kDir, 2)) << "direction inverted";
   EXPECT_FALSE(rig_.other(kPulse, 2)) << "pulse inverted";
@@ -147,11 +149,13 @@ class ChannelSerialTest : public ChannelTest {
     std::uint32_t word = 0;
     edges_ = 0;
     period_ = 0;
+    high_ = 0;
     Tick last_edge = 0;
     bool last = false;
     for (Tick t = 0; t < 24 * (3 << 7) + 400; ++t) {
       rig_.tick();
       const bool now = (rig_.pins().serial & clock) != 0;
+      high_ += now;
       if (now && !last) {
         if (edges_ > 0) period_ = rig_.now() - last_edge;
         last_edge = rig_.now();
@@ -190,7 +194,7 @@ class ChannelSerialTest : public ChannelTest {
     return dacs;
   }
   int edges_ = 0;
-  Tick period_ = 0;
+  Tick period_ = 0, high_ = 0;  // ticks between two rises, and high in all
 };
 
 TEST_F(ChannelSerialTest, StrobeWordsAppearBitByBitAndKeepTheLast) {
@@ -237,7 +241,8 @@ TEST_F(ChannelSerialTest, BitsChangeAsTheClockFallsAndPhaseStartsOver) {
   EXPECT_EQ(starts, 20) << "a stream of 576 ticks each 203";
 }
 
-// 24 bits at n = 7 take 9216 of the 13057 ticks between two rises of PHASE.
+// 24 bits at n = 7 take 9216 of the 13057 ticks between two rises of PHASE. Of a bit of three ticks the clock is high
+// for two (servo-ic:5.13/7).
 TEST_F(ChannelSerialTest, DividersGiveEveryBitRate) {
   for (unsigned n = 0; n < 8; ++n) {
     rig_.write(ic_words::kClockControl, ic_words::clock_control::kAdcDivider.set(
@@ -247,6 +252,7 @@ TEST_F(ChannelSerialTest, DividersGiveEveryBitRate) {
     EXPECT_EQ(receive(kDacClk, [&] { return (rig_.pins().serial & kDacStrobe) != 0; }), 0x7FFFC0u) << "n " << n;
     EXPECT_EQ(period_, 3 << n);
     EXPECT_EQ(edges_, 24) << "n " << n;
+    if (n == 0) { EXPECT_EQ(high_, 24 * 2); }
     EXPECT_EQ(receive(kAdcClk, [&] { return (rig_.pins().serial & kAdcStrobe) != 0; }), 0xFFFFFEu) << "n " << n;
     EXPECT_EQ(period_, 3 << (7 - n));
     EXPECT_EQ(edges_, 24) << "n " << n;
@@ -293,23 +299,27 @@ TEST_F(ChannelSerialTest, TripSendsAZeroWordWithoutPhase) {
       EXPECT_EQ(dacs.words, idle ? 1u : 2u) << "n " << n;
       EXPECT_EQ(dacs.wrong, 0u) << "DACs that are not zero, n " << n;
       EXPECT_LE(dacs.at - trip, 2 * 24 * bit + 6 * kTicksPerRef) << "n " << n;
+      if (!idle) { EXPECT_GE(dacs.at - trip, (24 - 12 + 18) * bit) << "the rest of the word under way comes first"; }
     }
 }
 
-// What is written after the trip neither cuts that word nor takes away the edge that latches it: here PHASE comes every
-// three ticks from the next bottom turnaround on, and the strobe word would be 0. The DACs' clock is the slowest.
+// What is written after the trip neither cuts that word nor takes away the edge that latches it: here PHASE would come
+// every three ticks, and the strobe word be 0. The DACs' clock is the slowest: a word takes 9216 of the 10003 ticks
+// between two rises of PHASE. 5001 ticks after the next of them, where that is at the bottom, PHASE is that fast: in
+// the middle of the zeros.
 TEST_F(ChannelSerialTest, NoWriteCutsTheZeroWordOfATrip) {
   const Tick bit = 3 << 7;
   for (const bool top : {false, true}) {
     rig_.in.trip = false;
     rig_.reset();
     rig_.write(ic_words::kClockControl, ic_words::clock_control::kDacDivider.set(kServoEachPhase, 7));
+    rig_.write(ic_words::kPwmControl, pwm_control(5000, 15));
     for (unsigned ch = 1; ch <= 4; ++ch) {
       control(ch, kDac);
       rig_.write(ch, words::kOutA, 0x555540 + (ch << 8));
       rig_.write(ch, words::kOutB, 0xAAAA80);
     }
-    for (int i = 0; i < (top ? 3 : 4); ++i) wait_for_phase(true);
+    for (int i = 0; i < (top ? 5 : 6); ++i) wait_for_phase(true);
     rig_.ticks(9 * bit);
     const Tick trip = rig_.now();
     rig_.in.trip = true;
@@ -321,6 +331,7 @@ TEST_F(ChannelSerialTest, NoWriteCutsTheZeroWordOfATrip) {
     EXPECT_GE(dacs.words, 2u);
     EXPECT_EQ(dacs.wrong, 0u) << "DACs that are not zero";
     EXPECT_LE(dacs.first_zero - trip, 2 * 24 * bit + 6 * kTicksPerRef);
+    EXPECT_GE(dacs.first_zero - trip, (24 - 10 + 18) * bit) << "the rest of the word under way, 18 bits of the zeros";
   }
 }
 

@@ -72,6 +72,15 @@ TEST_F(ChannelPulseTest, SwitchesAreOffForTheFirstDeadTimeAfterReset) {
       EXPECT_NE(rig_.pwm(channel, pair), rig_.pwm(channel, pair + 1)) << channel;
 }
 
+// From 0 upwards the triangle comes to -1, below a command of 0, after 2 I7000 + 3 ticks. A channel has it a tick late,
+// and a switch moves two ticks after it.
+TEST_F(ChannelPulseTest, TriangleStartsAtZeroGoingUpAfterReset) {
+  rig_.reset();
+  const Tick released = rig_.now();
+  edge_of([&] { return rig_.pwm(1, kBottomA); });
+  EXPECT_EQ(edge_of([&] { return !rig_.pwm(1, kBottomA); }) - released, 2 * 6527 + 3 + 1 + 2);
+}
+
 // A command written in one half of the triangle is in use in the next, whichever end lies between them.
 TEST_F(ChannelPulseTest, CommandIsTakenAtBothEndsOfTheTriangle) {
   rig_.write(ic_words::kPwmControl, pwm_control(kMaxCount, 0));

@@ -91,13 +91,18 @@ TYPED_TEST(ExternalPhaseOn, EdgeOutsideTheWindowMovesItOnlyAtTheFourthInARow) {
 }
 
 TYPED_TEST(ExternalPhaseOn, AnEdgeInTheWindowStartsTheCountOfMissesAnew) {
-  Tick turn = this->coming_turnaround();
-  for (int i = 0; i < 3; ++i, turn += kHalf) this->phase_pulse(turn - kSync + 50);
-  this->phase_pulse(turn - kSync);
-  turn += kHalf;
-  for (int i = 0; i < 3; ++i, turn += kHalf) this->phase_pulse(turn - kSync + 50);
-  this->rig.run(20);
-  EXPECT_EQ(this->offset_from(turn), 0);
+  for (const int before : {3, 2, 1}) {
+    SCOPED_TRACE(before);
+    Tick turn = this->coming_turnaround();
+    this->phase_pulse(turn - kSync);
+    turn += kHalf;
+    for (int i = 0; i < before; ++i, turn += kHalf) this->phase_pulse(turn - kSync + 50);
+    this->phase_pulse(turn - kSync);
+    turn += kHalf;
+    for (int i = 0; i < 3; ++i, turn += kHalf) this->phase_pulse(turn - kSync + 50);
+    this->rig.run(20);
+    EXPECT_EQ(this->offset_from(turn), 0);
+  }
 }
 
 // I7m07 = 1: phase from outside, servo made here.

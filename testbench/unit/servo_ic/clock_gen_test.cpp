@@ -1,5 +1,5 @@
-// A rule of the clock chain that sums over whole periods do not show: when a new servo divider is taken
-// (servo-ic:5.1/5).
+// Rules of the clock chain that sums over whole periods do not show: when a new servo divider is taken, and from which
+// tick on a word is in use (servo-ic:5.1/5, servo-ic:5.1/12).
 #include <gtest/gtest.h>
 
 #include "testbench/unit/servo_ic/servo_ic_rig.h"
@@ -34,6 +34,41 @@ TYPED_TEST(ClockChainOn, NewServoDividerIsTakenWhenTheRunningPeriodEnds) {
     EXPECT_EQ(next - fall, (from + 1) * this->kPhase) << from << " to " << to;
     EXPECT_EQ(this->servo_falls() - next, (to + 1) * this->kPhase) << from << " to " << to;
   }
+}
+
+// The second after the reference edge of its write: an edge that takes a divider then takes the new one, pins that are
+// high go.
+TYPED_TEST(ClockChainOn, AWordIsInUseFromTheSecondTickAfterItsWrite) {
+  this->rig.write(true, kClockWord, clock_word(0, 0, 0));
+  this->rig.run(20 * 13057);
+  for (const bool servo : {true, false}) {
+    const auto divide = [&](unsigned n) {
+      this->rig.write(true, kClockWord, clock_word(servo ? 0 : n, servo ? n : 0, 0));
+    };
+    const auto edge = [&] { return servo ? this->servo_falls() : this->rig.edge_of(&ServoIcRig::phase, true); };
+    for (const Tick lead : {1, 2, 3}) {
+      SCOPED_TRACE(::testing::Message() << (servo ? "SERVO, " : "PHASE, ") << lead << " ticks before its edge");
+      divide(1);
+      this->rig.run(10 * this->kPhase);
+      Tick next = 0;
+      do next = edge() + 2 * this->kPhase;
+      while ((next - lead) % kTicksPerRef != 0);
+      this->rig.run(next - lead - 1 - this->rig.now());
+      divide(4);
+      EXPECT_EQ(this->rig.now(), next - lead);
+      EXPECT_EQ(edge(), next);
+      EXPECT_EQ(edge() - next, (lead < 2 ? 2 : 5) * this->kPhase);
+    }
+    divide(0);
+    this->rig.run(10 * this->kPhase);
+  }
+  this->rig.edge_of(&ServoIcRig::servo, true);
+  this->rig.edge_of(&ServoIcRig::phase, true);
+  this->rig.write(true, kClockWord, clock_word(0, 4, 3));
+  this->rig.tick();
+  EXPECT_TRUE(this->rig.phase_oe() && this->rig.servo_oe());
+  this->rig.tick();
+  EXPECT_FALSE(this->rig.phase_oe() || this->rig.servo_oe());
 }
 
 }  // namespace

@@ -44,9 +44,18 @@ TYPED_TEST(SsiWords, WordsAreIndependent) {
   for (unsigned channel = 0; channel < 8; ++channel) this->rig.write(true, 0x20 + 4 * channel, 12 + channel);
   this->rig.write(true, 0x2F, 0x123002);
   this->rig.write(true, 0x3F, 0x456003);
+  for (unsigned address = 0; address < 64; ++address) this->rig.write(false, address, 0xFFFFFF);
   for (unsigned channel = 0; channel < 8; ++channel) EXPECT_EQ(this->rig.read(true, 0x20 + 4 * channel), 12 + channel);
   EXPECT_EQ(this->rig.read(true, 0x2F), 0x123002u);
   EXPECT_EQ(this->rig.read(true, 0x3F), 0x456003u);
+}
+
+TYPED_TEST(SsiWords, AreZeroAfterAReset) {
+  for (const bool geo : {false, true}) {
+    this->rig.reset(geo);
+    for (unsigned address = 0; address < 64; ++address)
+      for (const bool x : {false, true}) EXPECT_EQ(this->rig.read(x, address), 0u) << (x ? "X" : "Y") << address;
+  }
 }
 
 }  // namespace
