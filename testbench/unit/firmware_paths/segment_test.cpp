@@ -119,13 +119,18 @@ TEST_F(Segments, PeShowsTheLineFromWhichItWasCalledToo) {
   EXPECT_EQ(seen, lines);
 }
 
-// A change of velocity that is longer than what the move before has left of its own: that much of it.
+// A change of velocity that is longer than what the move before has left of its own: that much of it, and of its
+// S-curve the share that stays of the change.
 TEST_F(Segments, ABlendHasTheRoomOfTheMoveBefore) {
-  fit({"1000X"});
-  ASSERT_EQ(host("I5113=5"), "");
-  store({"TM50 TA50 TS0", "X1", "TA100 X2"});
-  const std::vector<Change> changes = {{25, 50, 0, 20}, {75, 50, 0, 10 - 20}, {175, 100, 0, -10}};
-  follow({Spline([&](double t) { return way(changes, t); }, 225, 5)});
+  for (const double s : {0, 20}) {
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5"), "");
+    store({"TM50 TA50 TS" + std::to_string(static_cast<int>(s)), "X1",
+           "TA100 TS" + std::to_string(static_cast<int>(2 * s)) + " X2"});
+    const std::vector<Change> changes = {{25, 50, s, 20}, {75, 50, s, 10 - 20}, {175, 100, 2 * s, -10}};
+    follow({Spline([&](double t) { return way(changes, t); }, 225, 5)});
+  }
 }
 
 // A next move that comes late: its change of velocity is about the corner, with what is left before that.
@@ -312,6 +317,23 @@ TEST_F(Segments, AMotorBesideItsAxisComesAlongWithAnArc) {
   run([&](double t) { ASSERT_NEAR((at(2) - at(1) - beside.at(t)) * kUnit, 0, 6) << t; });
   EXPECT_EQ(motors[0].trajectory, 20000 * 3072);
   EXPECT_EQ(motors[1].trajectory, 20000 * 3072);
+}
+
+// motion:7.2/8: half a turn on a radius of 10 and 15 out of the plane. An arc counts once, as an axis that F counts;
+// what goes out of the plane counts where its axis does.
+TEST_F(Segments, AnArcAndTheWayOutOfItsPlaneCountAsTheirAxesDo) {
+  const double arc = 10 * kPi, both = std::hypot(arc, 15);
+  const std::pair<const char*, double> cases[] = {
+      {"FRAX(X,Y,Z)", both}, {"FRAX(Z)", both}, {"FRAX(X)", arc}, {"FRAX(X,Y)", arc}};
+  for (const auto& [axes, length] : cases) {
+    platform::power_up();
+    fit({"1000X", "1000Y", "1000Z"});
+    ASSERT_EQ(host("I5113=5 I5190=1000"), "");
+    store({axes, "F100 TA50 TS0", "CIRCLE1 X20 Y0 Z15 I10 J0"});
+    const double time = length / 100 * 1000 + 50;
+    EXPECT_NEAR(run([](double) {}), std::ceil(time / 5) * 5 + 2 * 5, kTickMs) << axes;
+    EXPECT_EQ(motors[2].trajectory, 15000 * 3072);
+  }
 }
 
 // 5000 mm/min on a radius of 50 mm, points every 10 ms: V^2 T^2 / (6 R) = 2.3 um (motion:7.1/4).
