@@ -14,7 +14,7 @@ module channel_compare #(
   input  wire logic        other_i,      // I7mn1; the source below is chosen outside
   input  wire logic        count_i,      // the source counts at this edge
   input  wire logic        down_i,
-  input  wire logic        hold_i,       // the source is held at 0
+  input  wire logic        hold_i,       // the source is held at 0, or of an MLDT: no motion
   input  wire logic [23:0] counter_i,    // position of the source before this edge
   input  wire logic [11:0] fraction_i,
   input  wire logic [5:0]  we_i,         // bit 0 A, 1 B, 2 increment, 3 fraction of A, 4 fraction of B, 5 EQU

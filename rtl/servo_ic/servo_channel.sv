@@ -30,7 +30,7 @@ module servo_channel (
   // position of this channel for the compare of others, and of channel 1
   output logic             count_o,         // this edge counts
   output logic             down_o,
-  output logic             hold_o,          // held at 0
+  output logic             hold_o,          // held at 0, or MLDT: no motion
   output logic [23:0]      counter_o,
   output logic [11:0]      fraction_o,
   input  wire logic        count1_i,
@@ -53,7 +53,7 @@ module servo_channel (
 
   logic [23:0] control, out_a, out_b, out_c;
   // Control word
-  logic       index_inv, flag_inv, hold, other, aena, gated, gate_low, demux, fine;
+  logic       index_inv, flag_inv, hold, mldt, other, aena, gated, gate_low, demux, fine;
   logic       dir_inv, ab_inv, c_inv, ab_dac, c_pfm;
   logic [1:0] flag_select, capture_source;
   logic [3:0] mode;
@@ -63,6 +63,7 @@ module servo_channel (
   assign flag_inv       = control[brick_regs_pkg::ServoChannelControlFlagInvertLsb];
   assign flag_select    = control[brick_regs_pkg::ServoChannelControlFlagSelectLsb +: 2];
   assign hold           = control[brick_regs_pkg::ServoChannelControlCounterResetLsb];
+  assign mldt           = mode == brick_regs_pkg::DecodeMldt;
   assign other          = control[brick_regs_pkg::ServoChannelControlCompareChannelLsb];
   assign aena           = control[brick_regs_pkg::ServoChannelControlAenaLsb];
   assign gated          = control[brick_regs_pkg::ServoChannelControlGatedIndexLsb];
@@ -110,7 +111,7 @@ module servo_channel (
   );
   channel_subcount u_subcount (
     .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
-    .enable_i(fine & (mode != brick_regs_pkg::DecodeMldt)), .count_i(count),
+    .enable_i(fine & ~mldt), .count_i(count),
     .reversed_i(down ^ last_down), .down_i(last_down), .down_new_i(down), .t1_i(t1),
     .fraction_o(fraction), .fraction_d_o(fraction_d)
   );
@@ -120,7 +121,7 @@ module servo_channel (
   end
   assign count_o    = count;
   assign down_o     = down;
-  assign hold_o     = hold;
+  assign hold_o     = hold | mldt;
   assign counter_o  = counter;
   assign fraction_o = fine ? fraction : 12'd0;
 
@@ -152,7 +153,7 @@ module servo_channel (
   channel_compare u_compare (
     .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
     .fine_i(fine), .other_i(other),
-    .count_i(other ? count1_i : count), .down_i(other ? down1_i : down), .hold_i(other ? hold1_i : hold),
+    .count_i(other ? count1_i : count), .down_i(other ? down1_i : down), .hold_i(other ? hold1_i : hold_o),
     .counter_i(other ? counter1_i : counter), .fraction_i(other ? fraction1_i : fraction),
     .we_i(compare_we), .wdata_i,
     .a_o(compare_a), .b_o(compare_b), .inc_o(compare_inc),

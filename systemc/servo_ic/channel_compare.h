@@ -13,7 +13,7 @@ namespace brick {
 struct ChannelPosition {
   std::uint32_t counter = 0;
   unsigned fraction = 0;
-  bool hold = false;  // counter reset
+  bool hold = false;  // counter reset, or MLDT
   bool count = false, down = false;
 };
 

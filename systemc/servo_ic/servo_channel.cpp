@@ -236,7 +236,7 @@ ChannelPosition ServoChannel::sclk(Tick edge, const ChannelPosition* channel1) {
 
   const ChannelDecode::Result d = decode_.step(ready, decode(), hold(), pins & 7, pfm_.event(), pfm_.down());
   pfm_.take_event();
-  const ChannelPosition own{counter_.counter(), fine() ? fraction() : 0, hold(), d.count, d.down};
+  const ChannelPosition own{counter_.counter(), fine() ? fraction() : 0, still(), d.count, d.down};
   compare_.sclk(is(channel_control::kCompareChannel) && channel1 != nullptr ? *channel1 : own, fine(),
                 is(channel_control::kCompareChannel));
 

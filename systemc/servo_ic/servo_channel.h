@@ -64,7 +64,7 @@ class ServoChannel {
   bool uses_channel1() const { return is(channel_control::kCompareChannel); }
   void skip_sclk(std::int64_t periods) { counter_.skip(periods); }
   ChannelPosition position() const {
-    return {counter_.counter(), fine() ? fraction() : 0, hold(), false, false};
+    return {counter_.counter(), fine() ? fraction() : 0, still(), false, false};
   }                                                                  // settled
   ChannelPosition sclk(Tick edge, const ChannelPosition* channel1);  // returns its own position before the edge
 
@@ -138,7 +138,9 @@ class ServoChannel {
   bool is(const regs::Field& field) const { return field.is_set(control_); }
   std::uint32_t decode() const { return channel_control::kDecode.get(control_); }
   bool fine() const { return is(channel_control::kHardware1t); }
-  bool has_fraction() const { return fine() && decode() != regs::decode::kMldt; }
+  bool mldt() const { return decode() == regs::decode::kMldt; }
+  bool has_fraction() const { return fine() && !mldt(); }
+  bool still() const { return hold() || mldt(); }  // no motion for a compare to look at
   unsigned fraction() const { return counter_.down() ? 4095 - subcount_.e() : subcount_.e(); }
   std::uint32_t status(bool trip) const;
 

@@ -196,5 +196,29 @@ TEST_F(ChannelFineCompareTest, TurningHardware1TOnOrHoldingTheCounterLeavesNothi
   }
 }
 
+// In MLDT mode e is 0 (servo-ic:5.7/5): from the far end of its cell the position goes back over the compare in its
+// middle, be it the channel's own or channel 1's, and nothing has moved.
+TEST_F(ChannelFineCompareTest, ChangingToMldtAndBackLeavesNothing) {
+  for (const unsigned channel : {1u, 2u})
+    for (const bool up : {true, false}) {
+      const int way = up ? 1 : -1;
+      control(1, kWord | kCounterReset);
+      control(2, kWord | kFromChannel1);
+      control(1, kWord);
+      steps(1, 4, up, 20 * kSclk);
+      rig_.ticks(100 * kSclk);
+      place(channel, {4 * way, 2048}, {100 * way, 0}, 0);
+      const bool before{equ(channel)};
+      for (const std::uint32_t word : {decode_mode(regs::decode::kMldt) | kPfm | kFine, kWord}) {
+        control(1, word);
+        rig_.ticks(20 * kSclk);
+        EXPECT_EQ(bool{equ(channel)}, before) << "channel " << channel << (up ? ", up" : ", down");
+        EXPECT_EQ(rig_.read(channel, words::kCompareB), static_cast<std::uint32_t>(100 * way) & kCounterMask);
+      }
+      steps(1, 1, up, 20 * kSclk);
+      EXPECT_NE(bool{equ(channel)}, before) << "behind it motion counts";
+    }
+}
+
 }  // namespace
 }  // namespace brick

@@ -72,8 +72,8 @@ TEST_F(ChannelPulseTest, SwitchesAreOffForTheFirstDeadTimeAfterReset) {
       EXPECT_NE(rig_.pwm(channel, pair), rig_.pwm(channel, pair + 1)) << channel;
 }
 
-// From 0 upwards the triangle comes to -1, below a command of 0, after 2 I7000 + 3 ticks. A channel has it a tick late,
-// and a switch moves two ticks after it.
+// From 0 upwards the triangle comes to -1, below a command of 0, after 2 I7000 + 3 ticks and stands there for one more;
+// a switch moves two ticks after the end of that (servo-ic:5.11/10).
 TEST_F(ChannelPulseTest, TriangleStartsAtZeroGoingUpAfterReset) {
   rig_.reset();
   const Tick released = rig_.now();

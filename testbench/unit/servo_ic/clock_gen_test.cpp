@@ -14,9 +14,9 @@ class ClockChainOn : public ::testing::Test {
     rig.power_up();
     rig.write(true, kPwmWord, pwm_word(20));
   }
-  Tick servo_falls() { return rig.edge_of(&ServoIcRig::servo, false); }
+  Tick servo_falls() { return rig.edge_of(&ServoIcRig::servo, false, kLongest); }
 
-  static constexpr Tick kPhase = 2 * 20 + 3;
+  static constexpr Tick kPhase = 2 * 20 + 3, kLongest = 16 * kPhase;
   Rig rig;
 };
 
@@ -45,14 +45,19 @@ TYPED_TEST(ClockChainOn, AWordIsInUseFromTheSecondTickAfterItsWrite) {
     const auto divide = [&](unsigned n) {
       this->rig.write(true, kClockWord, clock_word(servo ? 0 : n, servo ? n : 0, 0));
     };
-    const auto edge = [&] { return servo ? this->servo_falls() : this->rig.edge_of(&ServoIcRig::phase, true); };
+    const auto edge = [&] {
+      return servo ? this->servo_falls() : this->rig.edge_of(&ServoIcRig::phase, true, this->kLongest);
+    };
     for (const Tick lead : {1, 2, 3}) {
       SCOPED_TRACE(::testing::Message() << (servo ? "SERVO, " : "PHASE, ") << lead << " ticks before its edge");
       divide(1);
       this->rig.run(10 * this->kPhase);
       Tick next = 0;
-      do next = edge() + 2 * this->kPhase;
-      while ((next - lead) % kTicksPerRef != 0);
+      do {
+        const Tick at = edge();
+        ASSERT_NE(at, kNever);
+        next = at + 2 * this->kPhase;
+      } while ((next - lead) % kTicksPerRef != 0);
       this->rig.run(next - lead - 1 - this->rig.now());
       divide(4);
       EXPECT_EQ(this->rig.now(), next - lead);

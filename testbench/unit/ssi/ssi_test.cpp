@@ -54,6 +54,9 @@ TYPED_TEST(SsiWords, AreZeroAfterAReset) {
   for (const bool geo : {false, true}) {
     this->rig.reset(geo);
     for (unsigned address = 0; address < 64; ++address)
+      for (const bool x : {false, true}) this->rig.write(x, address, 0xFFFFFF);
+    this->rig.reset(geo);
+    for (unsigned address = 0; address < 64; ++address)
       for (const bool x : {false, true}) EXPECT_EQ(this->rig.read(x, address), 0u) << (x ? "X" : "Y") << address;
   }
 }
