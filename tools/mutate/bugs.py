@@ -109,6 +109,12 @@ def misplaced(bug, root):
     return None if count == 1 else "there is no such file" if count < 0 else f"its old text stands there {count} times"
 
 
+def made_of(bug, root):
+    """What the source is with it, blanks apart: two cuts of one change are one bug."""
+    path = root / bug.file
+    return bug.file, hash_of("".join(text_of(path).replace(bug.old, bug.new).split())) if path.is_file() else ""
+
+
 def counted(text, bugs):
     """docs/rules.md with the counts of `bugs`."""
     have, lines = {}, []
@@ -140,9 +146,9 @@ def problems(root, folder=FOLDER):
             why = f"{RULES} has no row '{bug.rule}'"
         elif not names_test(rows[bug.rule][0], bug.tests.filter):
             why = f"the row of {RULES} does not name {bug.tests.filter}"
-        elif (bug.file, bug.old, bug.new) in seen:
+        elif made_of(bug, root) in seen:
             why = "it stands there twice"
-        seen.add((bug.file, bug.old, bug.new))
+        seen.add(made_of(bug, root))
         if why:
             found.append(f"{bug}: {why}")
     if counted(text, bugs) != text:

@@ -421,7 +421,7 @@ TEST_F(Homing, RolloverGoesTheShortestWayOrByTheSign) {
   EXPECT_EQ(target(100, 27000), 27000) << "off";
   ASSERT_EQ(host("I127=36000 I128=160"), "");
   EXPECT_EQ(target(0, 27000), -9000) << "the data sheet's";
-  EXPECT_EQ(target(0, 18000), 18000) << "half a turn";
+  for (const double half : {18000, -18000}) EXPECT_EQ(target(0, half), 18000) << "half a turn is upwards";
   EXPECT_EQ(target(72000 + 35000, 1000), 72000 + 37000);
   EXPECT_EQ(target(-72000 - 35000, 1000), -72000 - 35000);
   EXPECT_EQ(target(-100, 36000 * 5 - 200), -200);

@@ -208,6 +208,12 @@ class Entries(unittest.TestCase):
         self.entry(BUG.replace("servo-ic:1", "servo-ic:9"))
         self.assertIn("docs/rules.md has no row 'servo-ic:9'", self.problems())
 
+    def test_two_cuts_of_one_change_are_one_bug(self):
+        self.entry(BUG + BUG.replace("a & b", "= a &").replace("a | b", "= a |"))
+        self.assertIn("it stands there twice", self.problems())
+        self.entry(BUG + BUG.replace("a | b", "a ^ b"))
+        self.assertNotIn("twice", self.problems())
+
     def test_an_entry_without_a_field_is_refused(self):
         self.entry(BUG.replace('old = "a & b"\n', ""))
         with self.assertRaisesRegex(bugs.Bad, "expected file, old, new and test"):
