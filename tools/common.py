@@ -51,10 +51,13 @@ def hash_of(*parts):
 
 
 def as_of(root):
-    """For a page of measured figures: which commit they stand for. A change that is not committed is not seen."""
-    head = [*GIT, "-C", root, "rev-parse", "--short=10", "HEAD"]
-    commit = subprocess.run(head, capture_output=True, text=True, check=False).stdout.strip() or "unknown"
-    return f"at commit {commit}, {datetime.date.today().isoformat()}"
+    """For a page of measured figures: which commit they stand for, and whether there were changes on top of it."""
+    def said(*command):
+        return subprocess.run([*GIT, "-C", root, *command], capture_output=True, text=True, check=False).stdout.strip()
+
+    commit = said("rev-parse", "--short=10", "HEAD") or "unknown"
+    changes = " and changes" if said("status", "--porcelain", "--untracked-files=no") else ""
+    return f"at commit {commit}{changes}, {datetime.date.today().isoformat()}"
 
 
 def skip(reason):
