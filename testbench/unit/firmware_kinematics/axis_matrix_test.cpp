@@ -174,6 +174,16 @@ TEST_F(AxisMatrix, ArcsByJ) {
   }
 }
 
+// The way to a centre is none between points: from base (0, 0) about (10, 0) to (10, 10).
+TEST_F(AxisMatrix, TheWayToACentreIsNotDisplaced) {
+  ASSERT_EQ(host("I5113=2"), "");
+  store(with({"TSEL2 ADIS70 TM300 TA20", "CIRCLE1 X11 Y12 I10"}));
+  double worst = 0;
+  run([&](double) { worst = std::max(worst, std::abs(std::hypot(at(1) / 1000 - 10, at(2) / 1000) - 10)); });
+  EXPECT_LT(worst, 1e-3);
+  stands_at(10, 10, 0);
+}
+
 TEST_F(AxisMatrix, AMirrorTurnsArcs) {
   ASSERT_EQ(host("I5113=2"), "");
   store(with({"TSEL1 AROT60 TM300 TA20", "CIRCLE1 X10 Y10 I10 J0"}));
@@ -288,7 +298,7 @@ TEST_F(AxisMatrix, WordsBesideTbufAreNoMatrix) {
   EXPECT_EQ(cs().error, RUN_TIME_STATEMENT);
 }
 
-// One that leads nowhere leaves the one before.
+// One that leads nowhere leaves the one before, and so does one that is not there.
 TEST_F(AxisMatrix, ASingularOneIsNotTaken) {
   store(with({"TSEL1 AROT40", "AROT100"}));
   ASSERT_EQ(host("&1B1R"), "");
@@ -296,6 +306,12 @@ TEST_F(AxisMatrix, ASingularOneIsNotTaken) {
   EXPECT_EQ(cs().error, RUN_TIME_STATEMENT);
   go({"X10"});
   stands_at(10 * c30, 10 * s30, 0);
+  store({"TSEL5"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(100);
+  EXPECT_EQ(cs().error, RUN_TIME_STATEMENT);
+  go({"X20"});
+  stands_at(20 * c30, 20 * s30, 0);
 }
 
 TEST_F(AxisMatrix, ATriggerAndAMatrixAreARunTimeError) {

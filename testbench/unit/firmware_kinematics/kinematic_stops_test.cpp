@@ -4,6 +4,8 @@
 #include "testbench/unit/firmware_platform/fake_tasks.h"
 
 extern "C" {
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/system_path.h"
@@ -125,6 +127,28 @@ TEST_F(KinematicStops, TimeCounts) {
   }
 }
 
+// motion:8.1/7: 10 ms, of the time of slices, from the beginning of the inverse program to its end.
+TEST_F(KinematicStops, TenMillisecondsAreTheMost) {
+  fit_arm();
+  program("INVERSE", {"P5=1", "WHILE(1=1)", "ENDWHILE"});
+  store({"TM50 TA20 TS0", "X300 Y-200"});
+  ASSERT_EQ(host("&1B1R"), "");
+  fake_hal_on_pause([] {});
+  fake_hal_slices_leave(true);
+  fake_hal_set_look(1000);
+  std::uint32_t begun = 0;
+  for (int i = 0; i < 10000 && cs().error == RUN_TIME_NONE; ++i) {
+    fake_task_run_real_time();
+    if (p(5) != 0 && begun == 0) begun = slice_spent();
+  }
+  const double spent = (slice_spent() - begun) / static_cast<double>(hal_cycles_per_ms());
+  fake_hal_slices_leave(false);
+  fake_hal_on_pause(nullptr);
+  fake_hal_set_look(100);
+  EXPECT_EQ(cs().error, RUN_TIME_KINEMATIC);
+  EXPECT_NEAR(spent, 10, 0.5);
+}
+
 // While a program of &1 runs away, a motor of &2 begins its ramp.
 TEST_F(KinematicStops, RampsDoNotWait) {
   fit_arm();
@@ -169,6 +193,38 @@ TEST_F(KinematicStops, ADivisionByZero) {
     program("INVERSE", {"P1=Q8/0", "P2=0"});
     ASSERT_EQ(host(std::string("I5113=") + isx13), "");
     stops_with(RUN_TIME_KINEMATIC);
+  }
+}
+
+// motion:8.1/7: 2^47 units are 45812984490.67 counts of 3072 units.
+TEST_F(KinematicStops, PositionsHave47Bits) {
+  const std::pair<const char*, bool> cases[] = {
+      {"2*22906492245", true}, {"2*22906492246", false}, {"-2*22906492245", true}, {"-2*22906492246", false}};
+  for (const auto& [counts, fits] : cases) {
+    SCOPED_TRACE(counts);
+    platform::power_up();
+    fit({"I"});
+    program("FORWARD", {"Q7=P1/1000"});
+    program("INVERSE", {std::string("P1=") + counts});
+    ASSERT_EQ(host("I5150=1"), "");
+    store({"TM1000 TA500", "X1"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(30);
+    EXPECT_EQ(cs().error, fits ? RUN_TIME_NONE : RUN_TIME_KINEMATIC);
+  }
+}
+
+// motion:8.1/10
+TEST_F(KinematicStops, ATriggerBehindAnAxisIsARunTimeError) {
+  for (const char* isx50 : {"1", "0"}) {
+    SCOPED_TRACE(isx50);
+    platform::power_up();
+    fit_arm({400, 100}, {"1000Z"});
+    ASSERT_EQ(host(std::string("I322=100 I5150=") + isx50), "");
+    store({"RAPID Z1^1"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(30);
+    EXPECT_EQ(cs().error, *isx50 == '1' ? RUN_TIME_STATEMENT : RUN_TIME_NONE);
   }
 }
 

@@ -223,6 +223,7 @@ TEST_F(Kinematics, OtherMotorsGoByTheirDefinitions) {
   ASSERT_EQ(host("PMATCH"), "");
   platform::servo_ticks(3);
   EXPECT_EQ(axis(AXIS_Z), 7);
+  EXPECT_EQ(p(3), 7000) << "the forward program has the motors of other axes too";
   store({"TM100 TA50 TS0", "X350 INC(Z) Z-2"});
   run();
   EXPECT_NEAR(hand().x, 350, 1e-3);
@@ -266,6 +267,9 @@ TEST_F(Kinematics, PmatchSolvesDefinitionsToo) {
   fit({"1000X", "500Y"});
   motors[0].trajectory = 2500 * 3072;
   motors[1].trajectory = -500 * 3072;
+  ASSERT_EQ(host("&2PMATCH &1"), "");
+  platform::servo_ticks(3);
+  EXPECT_EQ(axis(AXIS_X), 0) << "another system was told";
   ASSERT_EQ(host("PMATCH"), "");
   platform::servo_ticks(3);
   EXPECT_EQ(axis(AXIS_X), 2.5);
@@ -287,7 +291,7 @@ TEST_F(Kinematics, PmatchInAProgram) {
   ASSERT_EQ(host("&1B1R"), "");
   for (int i = 0; i < 1000 && run_is_running(0); ++i) {
     platform::background(1);
-    shown |= motion_cs_status(0, 2) & 1u;
+    if (p(10) == 50) shown |= motion_cs_status(0, 2) & 1u;  // the match of R is over
     platform::servo_ticks(1);
   }
   EXPECT_EQ(cs().error, RUN_TIME_NONE);

@@ -51,7 +51,9 @@ TEST_F(MoveTime, InEachMode) {
   EXPECT_NEAR(left_at_zero({"TM100 TA40 TS10", "X1 MOVETIME", "DWELL100"}, 140), 1, kSlack) << "in segments";
   ASSERT_EQ(host("I5113=0"), "");
   EXPECT_NEAR(left_at_zero({"PVT120", "MOVETIME X2:0", "DWELL100"}, 120), 1, kSlack);
+  ASSERT_EQ(host("I5114=30"), "");
   EXPECT_EQ(left_at_zero({"RAPID", "MOVETIME X3"}, 0), -1) << "nobody knows how long";
+  EXPECT_EQ(at(1), 3000);
 }
 
 // A move of another kind that is calculated while segments execute: its own time, not that of the path.
@@ -99,6 +101,17 @@ TEST_F(MoveTime, WithoutASlotInLookaheadItIsLostAndSaidSo) {
     EXPECT_EQ(motion_cs_status(0, 2) >> 19 & 1u, slot ? 0u : 1u);
     ASSERT_EQ(host("DELETE LOOKAHEAD"), "");
   }
+}
+
+// motion:8.3/1: of 140 ms of the program, at half its rate too.
+TEST_F(MoveTime, CyclesAreThoseOf100Percent) {
+  ASSERT_EQ(host("I5114=-1 I5111=0 I5194=8388607"), "");
+  ASSERT_EQ(host("&1%50"), "");
+  platform::servo_ticks(10);
+  store({"TM100 TA40 TS10", "MOVETIME X1"});
+  double most = 0;
+  EXPECT_NEAR(run([&](double) { most = std::max(most, std::stod(host("I5111"))); }), 280, kSlack);
+  EXPECT_NEAR(most * kTickMs, 139, kSlack);
 }
 
 TEST_F(MoveTime, LongerThanNothingAtAll) {

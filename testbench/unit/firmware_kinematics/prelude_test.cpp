@@ -24,6 +24,18 @@ TEST_F(Prelude, ComesBeforeEachMove) {
   EXPECT_EQ(x(), 5);
 }
 
+// Of arcs too: I, J, K and R may come first.
+TEST_F(Prelude, ComesBeforeLinesThatBeginWithAnArcVector) {
+  store(500, {"P1=P1+1", "RETURN"});
+  const char* lines[] = {"N1 I1 X1", "J1 X2", "K1 X3", "R1 X4"};
+  for (const char* line : lines) {
+    SCOPED_TRACE(line);
+    ASSERT_EQ(host("P1=0"), "");
+    run({"F1000", "CIRCLE1", "PRELUDE1 CALL500", line});
+    EXPECT_EQ(p(1), 1);
+  }
+}
+
 TEST_F(Prelude, ReadTakesTheMove) {
   store(500, {"READ(X,Y)", "X(Q124*2)", "P1=Q100", "RETURN"});
   run({"F1000", "PRELUDE1 CALL500", "X3 Y4", "P9=1"});

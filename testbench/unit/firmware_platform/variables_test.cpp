@@ -420,6 +420,15 @@ TEST(MVariables, PointAtPartsOfWords) {
   EXPECT_EQ(c.line("M5 RHD$10F2"), "0.25|FFFFFFFFFFFF");
 }
 
+// firmware:1.10/11: $4000 is the definition of M0, $5FFF that of M8191.
+TEST(MVariables, DefinitionsLieInUserMemory) {
+  Controller c;
+  c.line("M0->Y:$10F0,8,8 M1->X:$10F1,4,4 M8190->* M8191->*");
+  const std::string first = c.line("RHL$4000"), second = c.line("RHL$4001");
+  c.line("WL$5FFE,$" + second + ",$" + first);
+  EXPECT_EQ(c.line("M8191-> M8190->"), "Y:$10F0,8,8|X:$10F1,4,4");
+}
+
 TEST(MVariables, WordsThatDoNotExistReadZero) {
   Controller c;
   EXPECT_EQ(c.line("M1->X:$050000,0,24 M1=5 M1"), "0");

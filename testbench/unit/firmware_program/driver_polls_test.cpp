@@ -127,6 +127,21 @@ TEST_F(DriverPolls, StatusPositionsAndVariablesInOneLine) {
   play(slow, " ");
 }
 
+// firmware:5.1/20
+TEST_F(DriverPolls, PVAndFStandOneBehindTheOtherAndBeforeAVariable) {
+  ASSERT_EQ(host("M190->* M190=5 I68=2 Q3=4"), "");
+  EXPECT_EQ(host_lines("PVF"), (Lines{"0", "0", "0"}));
+  EXPECT_EQ(host_lines("FPVVFP"), (Lines(6, "0")));
+  EXPECT_EQ(host_lines("#1?PVFM190#2?PVF"), (Lines{"850000078000", "0", "0", "0", "5", "050000078000", "0", "0", "0"}));
+  for (const char* line : {"PM190", "VM190", "FM190", "PVFM(180+10)"}) EXPECT_EQ(host_lines(line).back(), "5") << line;
+  EXPECT_EQ(host_lines("VI68FQ3VP0"), (Lines{"0", "2", "0", "4", "0", "0"}));
+  for (const char* line : {"PVERSION", "VCID", "PVFCPU", "FSIZE"}) {
+    const Lines answer = host_lines(line);
+    ASSERT_EQ(answer.size(), 1u) << line;
+    EXPECT_EQ(answer.front(), "ERR003") << line;
+  }
+}
+
 // firmware:1.1/6: what stands before an error is done, what stands behind it is not. The bytes of such an answer are in
 // the exchanges that are played on every engine.
 TEST_F(DriverPolls, WhatStandsBehindAnErrorIsNotExecuted) {

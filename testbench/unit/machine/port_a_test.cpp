@@ -167,6 +167,20 @@ TEST(PortA, OnChipAccessesHaveAtLeastSevenWaitStatesOrOneForEachMultipleOfTheClo
   }
 }
 
+// host-bus:2.4/8: both cycles have nine clocks of the old clock, the one behind them is of the new one.
+TEST(PortA, ANewClockStartsAfterTheWritingCycle) {
+  PortARig rig;
+  rig.set_wait_states(31);
+  rig.set_wait_states(7);
+  ASSERT_EQ(rig.cycle % 2, 0) << "at an edge of the clock that all are made of: two clocks are three of it";
+  rig.read('X', 0x078000);
+  const auto first = rig.last->start;
+  rig.write('X', 0xFFFFFD, 15);
+  rig.read('X', 0x078000);
+  EXPECT_NEAR((rig.last->start - first) / kNs, (9 + 9) * tc_ns(8), 1e-5);
+  EXPECT_NEAR((rig.last->data_time - rig.last->start) / kNs, 7.75 * tc_ns(16) - 5, 1e-5);
+}
+
 TEST(PortA, OnChipAccessesMoveNoBusSignal) {
   PortARig rig;
   rig.write('X', 0xFFFFC7, 0x41);
