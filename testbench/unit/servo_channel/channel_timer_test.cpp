@@ -253,6 +253,26 @@ TEST_F(ChannelMldtTest, HasNoFraction) {
   }
 }
 
+// Into MLDT and out of it again seven reference edges later, at any edge of the division and of the catching up behind
+// a count and before it: from a change that meets an estimate on there is none until the next count.
+TEST_F(ChannelMldtTest, ComesAndGoesAtAnyEdgeOfTheDivision) {
+  for (Tick at = 0; at <= 40; ++at) {
+    SCOPED_TRACE(at);
+    control(1, kX4 | kFine);
+    steps(1, 3, true, 40 * kSclk);
+    step(1, true, kHold - 2 * kSclk + at * kTicksPerRef);
+    control(1, decode_mode(regs::decode::kMldt) | kFine);
+    rig_.ticks(7 * kTicksPerRef);
+    control(1, kX4 | kFine);
+    rig_.ticks(3 * kPhase);
+    if (at * kTicksPerRef >= 2 * kSclk) { EXPECT_EQ(fine2::kServo.get(timer2()), 0u) << "the count was there"; }
+    step(1, true, 40 * kSclk);
+    step(1, true, 40 * kSclk + 3 * kPhase);
+    EXPECT_EQ(fine2::kServo.get(timer2()), 4095u) << "the next count has had its time";
+    ASSERT_EQ(rig_.difference, "");
+  }
+}
+
 // A second echo of one pulse: T2 has run on from the same pulse.
 TEST_F(ChannelMldtTest, EveryEchoOfAPulseIsTimedFromIt) {
   pulse();
