@@ -207,7 +207,7 @@ TEST_F(ChannelFineCompareTest, ChangingToMldtAndBackLeavesNothing) {
       control(1, kWord);
       steps(1, 4, up, 20 * kSclk);
       rig_.ticks(100 * kSclk);
-      place(channel, {4 * way, 2048}, {100 * way, 0}, 0);
+      place(channel, {4 * way, 2048}, {100 * way, 0}, 5);
       const bool before{equ(channel)};
       for (const std::uint32_t word : {decode_mode(regs::decode::kMldt) | kPfm | kFine, kWord}) {
         control(1, word);

@@ -260,7 +260,7 @@ TEST_F(ChannelMldtTest, ComesAndGoesAtAnyEdgeOfTheDivision) {
     SCOPED_TRACE(at);
     control(1, kX4 | kFine);
     steps(1, 3, true, 40 * kSclk);
-    step(1, true, kHold - 2 * kSclk + at * kTicksPerRef);
+    step(1, true, kHold - 5 * kSclk + at * kTicksPerRef);
     control(1, decode_mode(regs::decode::kMldt) | kFine);
     rig_.ticks(7 * kTicksPerRef);
     control(1, kX4 | kFine);
