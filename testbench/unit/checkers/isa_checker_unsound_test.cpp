@@ -46,50 +46,46 @@ TEST_F(IsaCheckerTest, ReadThatTheBoardDoesNotAnswerBreaksTheRowOfItsData) {
   EXPECT_EQ(checker_.read_cycles_answered(), 2u);
 }
 
-// host-bus:3.7: 16 or 64 KiB, and no LA in a slot of 8 bits. A read of its own that the board does not answer breaks
-// the row of its data, and no other.
-TEST_F(IsaCheckerTest, WindowOfTheBoardIsThatOfItsSwitches) {
-  const auto expect = [this](std::uint32_t address, bool own) {
+// A read that the board does not answer breaks the row of its data where it is the board's own, and no other.
+class IsaCheckerSwitches : public IsaCheckerTest {
+ protected:
+  void expect(bool own, const char* row, std::uint32_t address) {
     Points never;
     never.valid = kNever;
     checker_.ledger().forget();
-    memr(never, address);
-    const auto row = std::vector<std::string>{in_.slot8 ? "t4" : "t14"};
-    EXPECT_EQ(broken(), own ? row : std::vector<std::string>{}) << std::hex << address << ", flat " << in_.window_flat;
-  };
+    address < 0x10000 ? io(never, address) : memr(never, address);
+    EXPECT_EQ(broken(), own ? std::vector<std::string>{row} : std::vector<std::string>{}) << std::hex << address;
+  }
+};
+
+// host-bus:3.7: 16 or 64 KiB, and no LA in a slot of 8 bits.
+TEST_F(IsaCheckerSwitches, WindowOfTheBoardIsThatOfThem) {
   in_.window = 0xD4000 >> 14;
   for (const bool flat : {false, true}) {
+    SCOPED_TRACE(flat ? "64 KiB" : "16 KiB");
     in_.window_flat = flat;
     show();
-    for (const std::uint32_t address : {0xD4000u, 0xD7FFEu}) expect(address, true);
-    for (const std::uint32_t outer : {0xD0000u, 0xD3FFEu, 0xD8000u, 0xDFFFEu}) expect(outer, flat);
-    for (const std::uint32_t address : {0xCFFFEu, 0xE0000u, 0x1D4000u}) expect(address, false);
+    for (const std::uint32_t address : {0xD4000u, 0xD7FFEu}) expect(true, "t14", address);
+    for (const std::uint32_t outer : {0xD0000u, 0xD3FFEu, 0xD8000u, 0xDFFFEu}) expect(flat, "t14", outer);
+    for (const std::uint32_t address : {0xCFFFEu, 0xE0000u, 0x1D4000u}) expect(false, "t14", address);
   }
   in_.slot8 = true;
   show();
   at(end_ + 250 * kNs, [this] { in_.isa_la = 0x7F; });
-  expect(0xD4000, true);
+  expect(true, "t4", 0xD4000);
   at(end_ + 250 * kNs, [this] { in_.isa_la = 0xD4000 >> 17; });
-  expect(0xA4000, false);
+  expect(false, "t4", 0xA4000);
 }
 
-TEST_F(IsaCheckerTest, IoBlockOfTheBoardIsThatOfItsSwitches) {
-  const auto expect = [this](std::uint32_t address, bool own) {
-    Points never;
-    never.valid = kNever;
-    checker_.ledger().forget();
-    io(never, address);
-    const auto row = std::vector<std::string>{"t4"};
-    EXPECT_EQ(broken(), own ? row : std::vector<std::string>{})
-        << std::hex << address << ", 16 bits " << in_.io_decode16;
-  };
+TEST_F(IsaCheckerSwitches, IoBlockOfTheBoardIsThatOfThem) {
   in_.io_base = 0x71;
   for (const bool decode16 : {true, false}) {
+    SCOPED_TRACE(decode16 ? "16 bits" : "10 bits");
     in_.io_decode16 = decode16;
     show();
-    for (const std::uint32_t address : {0x710u, 0x71Fu}) expect(address, true);
-    for (const std::uint32_t address : {0x310u, 0xF10u, 0x8710u}) expect(address, !decode16);
-    for (const std::uint32_t address : {0x700u, 0x730u, 0x610u}) expect(address, false);
+    for (const std::uint32_t address : {0x710u, 0x71Fu}) expect(true, "t4", address);
+    for (const std::uint32_t address : {0x310u, 0xF10u, 0x8710u}) expect(!decode16, "t4", address);
+    for (const std::uint32_t address : {0x700u, 0x730u, 0x610u}) expect(false, "t4", address);
   }
 }
 
