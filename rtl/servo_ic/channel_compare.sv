@@ -14,7 +14,7 @@ module channel_compare #(
   input  wire logic        other_i,      // I7mn1; the source below is chosen outside
   input  wire logic        count_i,      // the source counts at this edge
   input  wire logic        down_i,
-  input  wire logic        hold_i,       // the source is held at 0, or of an MLDT: no motion
+  input  wire logic        still_i,      // what the source does here is no motion
   input  wire logic [23:0] counter_i,    // position of the source before this edge
   input  wire logic [11:0] fraction_i,
   input  wire logic [5:0]  we_i,         // bit 0 A, 1 B, 2 increment, 3 fraction of A, 4 fraction of B, 5 EQU
@@ -48,7 +48,7 @@ module channel_compare #(
     down    = 1'b0;
     if (fine_i) begin
       pos = {counter_i, fraction_i};
-      if (ce_i && known_q && !hold_i && other_i == other_q) begin
+      if (ce_i && known_q && !still_i && other_i == other_q) begin
         way     = pos - last_q;
         down    = way[35];
         way     = down ? last_q - pos : way;
@@ -88,9 +88,9 @@ module channel_compare #(
       if (we_i[5]) equ_q <= wdata_i[brick_regs_pkg::ServoChannelControlEquStateLsb];
       if (ce_i) begin
         if (fine_i) last_q <= pos;
-        known_q <= fine_i & ~hold_i;
         other_q <= other_i;
       end
+      if (ce_i || still_i) known_q <= fine_i & ~still_i;
     end
   end
 

@@ -13,7 +13,7 @@ namespace brick {
 struct ChannelPosition {
   std::uint32_t counter = 0;
   unsigned fraction = 0;
-  bool hold = false;  // counter reset, or MLDT
+  bool still = false;  // what it does here is no motion
   bool count = false, down = false;
 };
 
@@ -36,6 +36,9 @@ class BasicChannelCompare {
   void set_b_fraction(std::uint32_t v) { bf_ = regs::servo_channel_fine::timer1::kCompareB.get(v); }
   void set_equ(bool v) { equ_ = v; }
 
+  // What the position has done since the last SCLK edge is no motion.
+  void forget() { known_ = false; }
+
   // `other`: the position is that of channel 1.
   void sclk(const ChannelPosition& p, bool fine, bool other) {
     bool hit_a = false, hit_b = false, down = p.down;
@@ -44,7 +47,7 @@ class BasicChannelCompare {
       const std::uint32_t at = EquOnLeave ? p.counter : (p.counter + (p.down ? 0xFFFFFF : 1)) & 0xFFFFFF;
       hit_a = p.count && at == a_;
       hit_b = p.count && at == b_;
-    } else if (known_ && !p.hold && other == other_) {
+    } else if (known_ && !p.still && other == other_) {
       down = ((pos - last_) >> 35 & 1) != 0;
       hit_a = passed(pos, std::uint64_t{a_} << 12 | af_, down);
       hit_b = passed(pos, std::uint64_t{b_} << 12 | bf_, down);
@@ -54,7 +57,7 @@ class BasicChannelCompare {
     if (hit_a) b_ = (b_ + step) & 0xFFFFFF;
     equ_ ^= hit_a != hit_b;
     last_ = pos;
-    known_ = fine && !p.hold;
+    known_ = fine && !p.still;
     other_ = other;
   }
 

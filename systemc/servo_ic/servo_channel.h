@@ -72,6 +72,9 @@ class ServoChannel {
   bool runs_pfm(bool trip) const { return is(channel_control::kCPfm) && !trip; }
   const ChannelPfm& pfm() const { return pfm_; }
   bool hold() const { return is(channel_control::kCounterReset); }
+  bool still() const { return hold() || mldt(); }  // no motion for a compare to look at
+  bool fine() const { return is(channel_control::kHardware1t); }
+  void forget_position() { compare_.forget(); }
   bool shows_pwm(unsigned output) const { return !is(output == 2 ? channel_control::kCPfm : channel_control::kAbDac); }
   Tick next_pwm_event(Tick now, TriangleLine line) const;
   std::uint32_t counter() const { return counter_.counter(); }
@@ -137,15 +140,15 @@ class ServoChannel {
   }
   bool is(const regs::Field& field) const { return field.is_set(control_); }
   std::uint32_t decode() const { return channel_control::kDecode.get(control_); }
-  bool fine() const { return is(channel_control::kHardware1t); }
   bool mldt() const { return decode() == regs::decode::kMldt; }
   bool has_fraction() const { return fine() && !mldt(); }
-  bool still() const { return hold() || mldt(); }  // no motion for a compare to look at
+  bool still(Tick edge) const { return still() || edge <= fine_turns_until_; }
   unsigned fraction() const { return counter_.down() ? 4095 - subcount_.e() : subcount_.e(); }
   std::uint32_t status(bool trip) const;
 
   std::uint32_t control_ = 0;
-  Tick equ_write_until_ = 0;  // edge at which EQU write falls back
+  Tick equ_write_until_ = 0;   // edge at which EQU write falls back
+  Tick fine_turns_until_ = 0;  // edge behind the write that turned hardware 1/T on or off
   std::array<std::uint32_t, 3> out_{};
   bool error_ = false, loss_ = false;
   bool error_now_ = false, loss_now_ = false;  // at the last SCLK; while settled at each

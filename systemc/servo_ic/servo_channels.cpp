@@ -23,8 +23,14 @@ void ServoChannels::write(bool x, unsigned offset, std::uint32_t value) {
   ServoChannel& channel = channel_[offset >> 3];
   const bool control = x && (offset & 7) == regs::servo_channel::kControl.address;
   if (control) settle_pwm_times();
+  const bool fine = channel.fine();
   channel.write(now_, sclk_.start() == now_, x, offset & 7, value, in.trip);
-  if (control) channel.change_dac_lines(dac_.unclocked(now_));
+  if (!control) return;
+  channel.change_dac_lines(dac_.unclocked(now_));
+  for (ServoChannel& c : channel_) {
+    const ServoChannel& source = &c != &channel_[0] && c.uses_channel1() ? channel_[0] : c;
+    if (source.still() || (&source == &channel && channel.fine() != fine)) c.forget_position();
+  }
 }
 
 void ServoChannels::advance(Tick t) {

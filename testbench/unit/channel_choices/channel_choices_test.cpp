@@ -246,13 +246,13 @@ void random_decode(std::uint32_t seed) {
     RtlChoices::Inputs& in = rtl.in;
     if (random() % 50 == 0) in.mode = random() % 16;
     in.ready = random() % 100 != 0;
-    in.position.hold = random() % 100 == 0;
+    in.position.still = random() % 100 == 0;
     if (random() % 2 == 0) in.abc ^= 1u << random() % 3;
     if (random() % 20 == 0) in.abc = random() % 8;
     in.pulse = random() % 4 == 0;
     in.pulse_down = random() % 2 == 0;
     rtl.edge();
-    const auto m = model.step(in.ready, in.mode, in.position.hold, in.abc, in.pulse, in.pulse_down);
+    const auto m = model.step(in.ready, in.mode, in.position.still, in.abc, in.pulse, in.pulse_down);
     ASSERT_TRUE((rtl.decode(ALeadsUp) == RtlChoices::Decode{m.count, m.count && m.down, m.error}))
         << "edge " << i << " mode " << in.mode;
   }

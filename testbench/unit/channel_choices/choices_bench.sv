@@ -42,7 +42,7 @@ module choices_bench (
     logic        mark, echo, unused;
     channel_compare #(.EquOnLeave(i == 1)) u_compare (
       .clk_ref_i, .rst_ni, .ce_i, .fine_i, .other_i,
-      .count_i, .down_i, .hold_i, .counter_i, .fraction_i,
+      .count_i, .down_i, .still_i(hold_i), .counter_i, .fraction_i,
       .we_i, .wdata_i,
       .a_o(a_o[i]), .b_o(b_o[i]), .inc_o(inc),
       .a_fraction_o(a_fraction), .b_fraction_o(b_fraction),

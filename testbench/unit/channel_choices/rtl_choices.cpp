@@ -13,7 +13,7 @@ void drive(Vchoices_bench& v, const ChoicesInputs& in) {
   v.other_i = in.other;
   v.count_i = in.position.count;
   v.down_i = in.position.down;
-  v.hold_i = in.position.hold;
+  v.hold_i = in.position.still;
   v.counter_i = in.position.counter;
   v.fraction_i = static_cast<SData>(in.position.fraction);
   v.we_i = static_cast<CData>(in.we);

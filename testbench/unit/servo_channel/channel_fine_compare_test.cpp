@@ -220,5 +220,61 @@ TEST_F(ChannelFineCompareTest, ChangingToMldtAndBackLeavesNothing) {
     }
 }
 
+// The same when it begins with one edge of clk_ref and ends with the next, between two SCLK edges or on one: held at 0
+// with the compare on the way there, MLDT, and 1/T off with it in the cell's middle.
+TEST_F(ChannelFineCompareTest, WhatIsOverWithinAnSclkPeriodLeavesNothing) {
+  struct Row {
+    const char* what;
+    std::uint32_t word;
+    int cell, steps;  // of the compare; until the position is beyond it again
+  };
+  for (const Row& row : {Row{"counter reset", kWord | kCounterReset, 2, 3},
+                         Row{"MLDT", decode_mode(regs::decode::kMldt) | kPfm | kFine, 4, 1}, Row{"1/T off", kX4, 4, 1}})
+    for (const unsigned channel : {1u, 2u})
+      for (const bool up : {true, false})
+        for (int start = 0; start < kSclk / kTicksPerRef; ++start) {
+          const std::string what = row.what + (", channel " + std::to_string(channel)) + (up ? ", up, " : ", down, ") +
+                                   std::to_string(start) + " edges on";
+          const int way = up ? 1 : -1;
+          control(1, kWord | kCounterReset);
+          control(2, kWord | kFromChannel1);
+          control(1, kWord);
+          steps(1, 4, up, 20 * kSclk);
+          rig_.ticks(100 * kSclk);
+          place(channel, {row.cell * way, 2048}, {100 * way, 0}, 5);
+          const bool before{equ(channel)};
+          rig_.ticks((2 * kSclk - rig_.now() % kSclk) + start * kTicksPerRef);
+          control(1, row.word);
+          control(1, kWord);
+          rig_.ticks(20 * kSclk);
+          EXPECT_EQ(bool{equ(channel)}, before) << what;
+          EXPECT_EQ(rig_.read(channel, words::kCompareB), static_cast<std::uint32_t>(100 * way) & kCounterMask) << what;
+          steps(1, row.steps, up, 20 * kSclk);
+          EXPECT_NE(bool{equ(channel)}, before) << what << ": behind it motion counts";
+        }
+}
+
+// 1/T of channel 1 comes and goes while channel 2 compares its position: from the far end of the cell over the compare
+// in its middle.
+TEST_F(ChannelFineCompareTest, TurningHardware1TOfTheSourceLeavesNothing) {
+  for (const bool up : {true, false}) {
+    const int way = up ? 1 : -1;
+    control(1, kWord | kCounterReset);
+    control(2, kWord | kFromChannel1);
+    control(1, kWord);
+    steps(1, 4, up, 20 * kSclk);
+    rig_.ticks(100 * kSclk);
+    place(2, {4 * way, 2048}, {100 * way, 0}, 5);
+    const bool before{equ(2)};
+    for (const std::uint32_t word : {kX4, kWord, kX4, kWord}) {
+      control(1, word);
+      rig_.ticks(20 * kSclk);
+      EXPECT_EQ(bool{equ(2)}, before) << (up ? "up" : "down") << (word == kWord ? ", on" : ", off");
+    }
+    steps(1, 1, up, 20 * kSclk);
+    EXPECT_NE(bool{equ(2)}, before) << "behind it motion counts";
+  }
+}
+
 }  // namespace
 }  // namespace brick

@@ -77,6 +77,14 @@ class Stimulus {
     hall_[ch - 1] = mode == regs::decode::kHallCw || mode == regs::decode::kHallCcw;
     if (!chance(6)) word &= ~kCounterReset;
     if (chance(2)) word &= ~kFine;
+    rig_.write(ch, words::kControl, control_[ch - 1] = word);
+  }
+  // Something else for a few edges of clk_ref: over before SCLK sees it, or not.
+  void blink(unsigned ch) {
+    const std::uint32_t word = control_[ch - 1];
+    const std::uint32_t other[] = {word ^ kFine, word ^ kCounterReset, field::kDecode.set(word, regs::decode::kMldt)};
+    rig_.write(ch, words::kControl, other[value(2)]);
+    if (chance(2)) rig_.ref(static_cast<int>(between(1, 3)));
     rig_.write(ch, words::kControl, word);
   }
 
@@ -99,7 +107,10 @@ class Stimulus {
         rig_.write(chance(2) ? ic_words::kDacStrobe : ic_words::kAdcStrobe, value(0xFFFFFF));
         break;
       case 4:
-        if (chance(4)) control(ch);
+        if (chance(4))
+          control(ch);
+        else if (chance(2))
+          blink(ch);
         break;
       case 5:
       case 6: {
@@ -137,6 +148,7 @@ class Stimulus {
   std::mt19937 random_;
   Tick next_[4] = {}, speed_[4] = {};
   unsigned place_[4] = {};
+  std::uint32_t control_[4] = {};
   bool up_[4] = {}, hall_[4] = {};
 };
 
