@@ -10,7 +10,7 @@ enum { PAUSE_MOTORS = 8 };
 
 #define TWO_PI 6.28318530717958647692
 
-#define RADIUS_MOST (INT64_C(1) << 59) /* what is nearly straight in the range of positions is straight beyond this */
+#define RADIUS_MOST (INT64_C(1) << 58) /* what is nearly straight in the range of positions is straight beyond this */
 
 /* A move as a motor makes it: where it ends and the way to there from the end before it; of an arc what the larger of
  * its radii is in its two directions, in the first of them twice that: the part that goes with it is halved, from -2 to
@@ -80,7 +80,7 @@ static void turn(uint32_t motor, const struct path_move* m, double largest, cons
   way->second = radius_in(motor, m->circle.second, largest);
   slice_pause();
   const bool is_round = way->first != 0 || way->second != 0;
-  way->turns = is_round && magnitude(way->first) < RADIUS_MOST && magnitude(way->second) < RADIUS_MOST;
+  way->turns = is_round && magnitude(way->first) < 2 * RADIUS_MOST && magnitude(way->second) < RADIUS_MOST;
   if (way->turns) way->along = way->whole - fixed_share(way->first, end->first) - fixed_share(way->second, end->second);
 }
 

@@ -305,6 +305,30 @@ TEST_F(Segments, AnArcBeyondAllRadiiIsStraight) {
   EXPECT_EQ(motors[1].trajectory, 700000LL * 3072);
 }
 
+// On the way (2, 1) X has twice the radius along it that it has across, Y the other way round: both bend while the
+// larger is a tenth below 2^58, and none does when it is above.
+TEST_F(Segments, TheBoundOfTheRadiusHoldsInBothDirections) {
+  constexpr double kCounts = 1e7, kX = 10, kY = 5, kMost = 0x1p58 / 3072 / kCounts;
+  const double chord = std::hypot(kX, kY), time = 100 * chord;
+  for (const double larger : {0.9, 1.1, 1.9}) {
+    platform::power_up();
+    fit({"10000000X", "10000000Y"});
+    const double radius = larger * kMost * chord / kX;
+    ASSERT_EQ(host("I5113=10 I5190=1000 I5197=.0000000001"), "");
+    store({"F10 TA100 TS0", "CIRCLE1 X10 Y5 R" + std::to_string(radius)});
+    const auto part = [=](double t) { return (risen(t, 100, 0) - risen(t - time, 100, 0)) / time; };
+    const auto beside = [=](double t) {
+      return larger < 1 ? chord * chord / (2 * radius) * part(t) * (1 - part(t)) : 0;
+    };
+    const auto x = [=](double t) { return kCounts * (kX * part(t) - beside(t) * kY / chord); };
+    const auto y = [=](double t) { return kCounts * (kY * part(t) + beside(t) * kX / chord); };
+    follow({Spline(x, time + 100, 10), Spline(y, time + 100, 10)}, 2 * 512);
+    EXPECT_EQ(motors[0].trajectory, 100000000LL * 3072);
+    EXPECT_EQ(motors[1].trajectory, 50000000LL * 3072);
+    if (HasFailure()) FAIL() << larger;
+  }
+}
+
 // A motor of an axis of the arc that does not stand where that is comes along evenly.
 TEST_F(Segments, AMotorBesideItsAxisComesAlongWithAnArc) {
   fit({"1000X", "1000X", "1000Y"});
