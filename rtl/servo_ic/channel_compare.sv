@@ -12,6 +12,7 @@ module channel_compare #(
   input  wire logic        ce_i,         // SCLK
   input  wire logic        fine_i,       // I7mn9
   input  wire logic        other_i,      // I7mn1; the source below is chosen outside
+  input  wire logic        source_fine_i,  // I7mn9 of the source
   input  wire logic        count_i,      // the source counts at this edge
   input  wire logic        down_i,
   input  wire logic        still_i,      // what the source does here is no motion
@@ -36,7 +37,10 @@ module channel_compare #(
   localparam logic [35:0] ArrivesLater = EquOnLeave ? 36'd0 : 36'd1;
   logic [35:0] last_q, pos, way, a_ahead, b_ahead;
   logic [23:0] at;  // where a count has to find a compare
-  logic        known_q, other_q, hit_a, hit_b, down;
+  logic [1:0]  source_q;
+  logic        known_q, jump, hit_a, hit_b, down;
+  // No motion: a source that is held, and a position that is elsewhere as it is another's or turns to or from 1/T.
+  assign jump = still_i || {other_i, source_fine_i} != source_q;
   always_comb begin
     pos     = 36'd0;
     way     = 36'd0;
@@ -48,7 +52,7 @@ module channel_compare #(
     down    = 1'b0;
     if (fine_i) begin
       pos = {counter_i, fraction_i};
-      if (ce_i && known_q && !still_i && other_i == other_q) begin
+      if (ce_i && known_q && !jump) begin
         way     = pos - last_q;
         down    = way[35];
         way     = down ? last_q - pos : way;
@@ -67,15 +71,15 @@ module channel_compare #(
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      a_q     <= 24'd0;
-      b_q     <= 24'd0;
-      inc_q   <= 24'd0;
-      af_q    <= 12'd0;
-      bf_q    <= 12'd0;
-      equ_q   <= 1'b0;
-      last_q  <= 36'd0;
-      known_q <= 1'b0;
-      other_q <= 1'b0;
+      a_q      <= 24'd0;
+      b_q      <= 24'd0;
+      inc_q    <= 24'd0;
+      af_q     <= 12'd0;
+      bf_q     <= 12'd0;
+      equ_q    <= 1'b0;
+      last_q   <= 36'd0;
+      known_q  <= 1'b0;
+      source_q <= 2'd0;
     end else begin
       if (hit_b) a_q <= down ? a_q - inc_q : a_q + inc_q;
       if (hit_a) b_q <= down ? b_q - inc_q : b_q + inc_q;
@@ -86,11 +90,10 @@ module channel_compare #(
       if (we_i[3]) af_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer2CompareALsb +: 12];
       if (we_i[4]) bf_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer1CompareBLsb +: 12];
       if (we_i[5]) equ_q <= wdata_i[brick_regs_pkg::ServoChannelControlEquStateLsb];
-      if (ce_i) begin
-        if (fine_i) last_q <= pos;
-        other_q <= other_i;
-      end
-      if (ce_i || still_i) known_q <= fine_i & ~still_i;
+      if (ce_i && fine_i) last_q <= pos;
+      if (ce_i)                 known_q <= fine_i & ~still_i;
+      else if (jump || !fine_i) known_q <= 1'b0;
+      source_q <= {other_i, source_fine_i};
     end
   end
 

@@ -30,12 +30,14 @@ module servo_channel (
   // position of this channel for the compare of others, and of channel 1
   output logic             count_o,         // this edge counts
   output logic             down_o,
-  output logic             still_o,         // held at 0, MLDT, or 1/T just turned: no motion
+  output logic             still_o,         // held at 0, or MLDT: no motion
+  output logic             fine_o,          // I7mn9
   output logic [23:0]      counter_o,
   output logic [11:0]      fraction_o,
   input  wire logic        count1_i,
   input  wire logic        down1_i,
   input  wire logic        still1_i,
+  input  wire logic        fine1_i,
   input  wire logic [23:0] counter1_i,
   input  wire logic [11:0] fraction1_i,
   // pins; inputs behind the synchroniser
@@ -115,19 +117,14 @@ module servo_channel (
     .reversed_i(down ^ last_down), .down_i(last_down), .down_new_i(down), .t1_i(t1),
     .fraction_o(fraction), .fraction_d_o(fraction_d)
   );
-  logic fine_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      servo_fraction_q <= 12'd0;
-      fine_q           <= 1'b0;
-    end else begin
-      if (servo_fall_i) servo_fraction_q <= fraction;
-      fine_q <= fine;
-    end
+    if (!rst_ni)           servo_fraction_q <= 12'd0;
+    else if (servo_fall_i) servo_fraction_q <= fraction;
   end
   assign count_o    = count;
   assign down_o     = down;
-  assign still_o    = hold | mldt | (fine ^ fine_q);
+  assign still_o    = hold | mldt;
+  assign fine_o     = fine;
   assign counter_o  = counter;
   assign fraction_o = fine ? fraction : 12'd0;
 
@@ -158,7 +155,7 @@ module servo_channel (
   logic        equ;
   channel_compare u_compare (
     .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
-    .fine_i(fine), .other_i(other),
+    .fine_i(fine), .other_i(other), .source_fine_i(other ? fine1_i : fine),
     .count_i(other ? count1_i : count), .down_i(other ? down1_i : down), .still_i(other ? still1_i : still_o),
     .counter_i(other ? counter1_i : counter), .fraction_i(other ? fraction1_i : fraction),
     .we_i(compare_we), .wdata_i,

@@ -39,15 +39,14 @@ class BasicChannelCompare {
   // What the position has done since the last SCLK edge is no motion.
   void forget() { known_ = false; }
 
-  // `other`: the position is that of channel 1.
-  void sclk(const ChannelPosition& p, bool fine, bool other) {
+  void sclk(const ChannelPosition& p, bool fine) {
     bool hit_a = false, hit_b = false, down = p.down;
     const std::uint64_t pos = std::uint64_t{p.counter} << 12 | p.fraction;
     if (!fine) {
       const std::uint32_t at = EquOnLeave ? p.counter : (p.counter + (p.down ? 0xFFFFFF : 1)) & 0xFFFFFF;
       hit_a = p.count && at == a_;
       hit_b = p.count && at == b_;
-    } else if (known_ && !p.still && other == other_) {
+    } else if (known_ && !p.still) {
       down = ((pos - last_) >> 35 & 1) != 0;
       hit_a = passed(pos, std::uint64_t{a_} << 12 | af_, down);
       hit_b = passed(pos, std::uint64_t{b_} << 12 | bf_, down);
@@ -58,7 +57,6 @@ class BasicChannelCompare {
     equ_ ^= hit_a != hit_b;
     last_ = pos;
     known_ = fine && !p.still;
-    other_ = other;
   }
 
   // The counter moves one count an SCLK edge at most, so EQU stays for so many of them after one that showed `counter`:
@@ -84,7 +82,7 @@ class BasicChannelCompare {
   std::uint32_t a_ = 0, b_ = 0, inc_ = 0;
   unsigned af_ = 0, bf_ = 0;
   std::uint64_t last_ = 0;
-  bool equ_ = false, known_ = false, other_ = false;
+  bool equ_ = false, known_ = false;
 };
 using ChannelCompare = BasicChannelCompare<kEquOnLeave>;
 

@@ -128,7 +128,6 @@ void ServoChannel::write(Tick now, bool sclk, bool x, unsigned offset, std::uint
       break;
     case word(words::kControl):
       subcount_.advance(now, has_fraction());
-      if (fine() != channel_control::kHardware1t.is_set(value)) fine_turns_until_ = next_ref_edge(now);
       control_ = (control_ & held) | (value & ~held & ~channel_control::kEquWrite.mask());
       if (channel_control::kEquWrite.is_set(value)) {
         equ_write_until_ = next_ref_edge(now);
@@ -237,9 +236,8 @@ ChannelPosition ServoChannel::sclk(Tick edge, const ChannelPosition* channel1) {
 
   const ChannelDecode::Result d = decode_.step(ready, decode(), hold(), pins & 7, pfm_.event(), pfm_.down());
   pfm_.take_event();
-  const ChannelPosition own{counter_.counter(), fine() ? fraction() : 0, still(edge), d.count, d.down};
-  compare_.sclk(is(channel_control::kCompareChannel) && channel1 != nullptr ? *channel1 : own, fine(),
-                is(channel_control::kCompareChannel));
+  const ChannelPosition own{counter_.counter(), fine() ? fraction() : 0, still(), d.count, d.down};
+  compare_.sclk(is(channel_control::kCompareChannel) && channel1 != nullptr ? *channel1 : own, fine());
 
   const unsigned old_fraction = fraction();
   const bool reversed = d.down != counter_.down();

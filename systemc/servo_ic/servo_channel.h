@@ -142,13 +142,11 @@ class ServoChannel {
   std::uint32_t decode() const { return channel_control::kDecode.get(control_); }
   bool mldt() const { return decode() == regs::decode::kMldt; }
   bool has_fraction() const { return fine() && !mldt(); }
-  bool still(Tick edge) const { return still() || edge <= fine_turns_until_; }
   unsigned fraction() const { return counter_.down() ? 4095 - subcount_.e() : subcount_.e(); }
   std::uint32_t status(bool trip) const;
 
   std::uint32_t control_ = 0;
-  Tick equ_write_until_ = 0;   // edge at which EQU write falls back
-  Tick fine_turns_until_ = 0;  // edge behind the write that turned hardware 1/T on or off
+  Tick equ_write_until_ = 0;  // edge at which EQU write falls back
   std::array<std::uint32_t, 3> out_{};
   bool error_ = false, loss_ = false;
   bool error_now_ = false, loss_now_ = false;  // at the last SCLK; while settled at each

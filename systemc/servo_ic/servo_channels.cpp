@@ -23,13 +23,15 @@ void ServoChannels::write(bool x, unsigned offset, std::uint32_t value) {
   ServoChannel& channel = channel_[offset >> 3];
   const bool control = x && (offset & 7) == regs::servo_channel::kControl.address;
   if (control) settle_pwm_times();
-  const bool fine = channel.fine();
+  const bool fine = channel.fine(), other = channel.uses_channel1();
   channel.write(now_, sclk_.start() == now_, x, offset & 7, value, in.trip);
   if (!control) return;
   channel.change_dac_lines(dac_.unclocked(now_));
+  if (channel.uses_channel1() != other) channel.forget_position();
   for (ServoChannel& c : channel_) {
-    const ServoChannel& source = &c != &channel_[0] && c.uses_channel1() ? channel_[0] : c;
-    if (source.still() || (&source == &channel && channel.fine() != fine)) c.forget_position();
+    const ServoChannel& source = compared_by(c);
+    const bool turns = channel.fine() != fine && (&c == &channel || &source == &channel);
+    if (turns || source.still()) c.forget_position();
   }
 }
 
@@ -215,7 +217,7 @@ Tick ServoChannels::next_equ_event(unsigned channels) const {
 }
 
 Tick ServoChannels::next_equ_of(const ServoChannel& channel) const {
-  if (&channel != &channel_[0] && channel.uses_channel1()) return channel_[0].compares(in.trip) ? sclk_.next() : kNever;
+  if (&compared_by(channel) != &channel) return channel_[0].compares(in.trip) ? sclk_.next() : kNever;
   if (!channel.compares(in.trip)) return kNever;
   Tick next = sclk_.after(channel.edges_to_equ() + 1, divider(kSclk));
   if (channel.settled()) {  // until the next pulse

@@ -119,6 +119,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
     return (select.w[1] & kDacData) != 0 &&
            std::any_of(channel_.begin(), channel_.end(), [](const ServoChannel& c) { return !c.shows_pwm(0); });
   }
+  const ServoChannel& compared_by(const ServoChannel& c) const { return c.uses_channel1() ? channel_[0] : c; }
   Tick next_equ_of(const ServoChannel& channel) const;
   template <class Pin>
   unsigned each(Pin pin) const {

@@ -25,8 +25,10 @@ class CompareRig {
     if (!on_leave) model_ = BasicChannelCompare<false>{};
   }
 
-  void write(unsigned we, std::uint32_t value) {
+  // Between two edges of SCLK.
+  void write(unsigned we, std::uint32_t value, bool still = false) {
     rtl_.in.ce = false;
+    rtl_.in.position.still = still;
     rtl_.in.position.count = false;
     rtl_.in.we = we;
     rtl_.in.wdata = value;
@@ -69,7 +71,10 @@ class CompareRig {
   template <class Model>
   RtlChoices::Compare edge_of(Model& model) {
     const RtlChoices::Inputs& in = rtl_.in;
-    if (in.ce) model.sclk(in.position, in.fine, in.other);
+    const bool jump = in.position.still || in.other != before_.other || in.fine != before_.fine;
+    before_ = in;
+    if (jump || !in.fine) model.forget();
+    if (in.ce) model.sclk(in.position, in.fine);
     if ((in.we & kWriteA) != 0) model.set_a(in.wdata);
     if ((in.we & kWriteB) != 0) model.set_b(in.wdata);
     if ((in.we & kWriteInc) != 0) model.set_inc(in.wdata);
@@ -81,6 +86,7 @@ class CompareRig {
 
   bool on_leave_;
   RtlChoices rtl_;
+  RtlChoices::Inputs before_;  // at the last edge
   std::variant<BasicChannelCompare<true>, BasicChannelCompare<false>> model_;
 };
 
@@ -162,7 +168,7 @@ TEST_P(CompareRule, EnginesAgreeOnRandomWalksAndThePromiseHolds) {
   int toggles = 0, broken = 0;
   for (int i = 0; i < 200'000; ++i) {
     if (value(39) == 0) {
-      rig_.write(1u << value(5), (value(3) == 0 ? value(0xFFFFFF) : counter + value(12) - 6) & 0xFFFFFF);
+      rig_.write(1u << value(5), (value(3) == 0 ? value(0xFFFFFF) : counter + value(12) - 6) & 0xFFFFFF, value(9) == 0);
       quiet = 0;
     }
     if (value(499) == 0) {
@@ -246,13 +252,13 @@ void random_decode(std::uint32_t seed) {
     RtlChoices::Inputs& in = rtl.in;
     if (random() % 50 == 0) in.mode = random() % 16;
     in.ready = random() % 100 != 0;
-    in.position.still = random() % 100 == 0;
+    in.hold = random() % 100 == 0;
     if (random() % 2 == 0) in.abc ^= 1u << random() % 3;
     if (random() % 20 == 0) in.abc = random() % 8;
     in.pulse = random() % 4 == 0;
     in.pulse_down = random() % 2 == 0;
     rtl.edge();
-    const auto m = model.step(in.ready, in.mode, in.position.still, in.abc, in.pulse, in.pulse_down);
+    const auto m = model.step(in.ready, in.mode, in.hold, in.abc, in.pulse, in.pulse_down);
     ASSERT_TRUE((rtl.decode(ALeadsUp) == RtlChoices::Decode{m.count, m.count && m.down, m.error}))
         << "edge " << i << " mode " << in.mode;
   }

@@ -11,7 +11,7 @@ module choices_bench (
   input  wire logic        other_i,
   input  wire logic        count_i,
   input  wire logic        down_i,
-  input  wire logic        hold_i,
+  input  wire logic        still_i,
   input  wire logic [23:0] counter_i,
   input  wire logic [11:0] fraction_i,
   input  wire logic [5:0]  we_i,
@@ -22,6 +22,7 @@ module choices_bench (
   // decode
   input  wire logic        ready_i,
   input  wire logic [3:0]  mode_i,
+  input  wire logic        hold_i,
   input  wire logic [2:0]  abc_i,
   input  wire logic        pulse_i,
   input  wire logic        pulse_down_i,
@@ -41,8 +42,8 @@ module choices_bench (
     logic [11:0] a_fraction, b_fraction;
     logic        mark, echo, unused;
     channel_compare #(.EquOnLeave(i == 1)) u_compare (
-      .clk_ref_i, .rst_ni, .ce_i, .fine_i, .other_i,
-      .count_i, .down_i, .still_i(hold_i), .counter_i, .fraction_i,
+      .clk_ref_i, .rst_ni, .ce_i, .fine_i, .other_i, .source_fine_i(fine_i),
+      .count_i, .down_i, .still_i, .counter_i, .fraction_i,
       .we_i, .wdata_i,
       .a_o(a_o[i]), .b_o(b_o[i]), .inc_o(inc),
       .a_fraction_o(a_fraction), .b_fraction_o(b_fraction),

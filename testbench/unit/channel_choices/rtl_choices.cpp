@@ -13,13 +13,14 @@ void drive(Vchoices_bench& v, const ChoicesInputs& in) {
   v.other_i = in.other;
   v.count_i = in.position.count;
   v.down_i = in.position.down;
-  v.hold_i = in.position.still;
+  v.still_i = in.position.still;
   v.counter_i = in.position.counter;
   v.fraction_i = static_cast<SData>(in.position.fraction);
   v.we_i = static_cast<CData>(in.we);
   v.wdata_i = in.wdata;
   v.ready_i = in.ready;
   v.mode_i = static_cast<CData>(in.mode);
+  v.hold_i = in.hold;
   v.abc_i = static_cast<CData>(in.abc);
   v.pulse_i = in.pulse;
   v.pulse_down_i = in.pulse_down;

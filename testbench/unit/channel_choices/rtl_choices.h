@@ -17,7 +17,7 @@ struct ChoicesInputs {
   unsigned we = 0;
   std::uint32_t wdata = 0;
   // decode
-  bool ready = true;
+  bool ready = true, hold = false;
   unsigned mode = 0, abc = 0;
   bool pulse = false, pulse_down = false;
   // ADC

@@ -3,6 +3,9 @@
 // comes from the rule's formula; when a count was, from channel 2, which compares channel 1's counter without 1/T and
 // turns its EQU at each count.
 #include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "testbench/unit/servo_channel/channel_fixture.h"
 
@@ -220,38 +223,61 @@ TEST_F(ChannelFineCompareTest, ChangingToMldtAndBackLeavesNothing) {
     }
 }
 
-// The same when it begins with one edge of clk_ref and ends with the next, between two SCLK edges or on one: held at 0
-// with the compare on the way there, MLDT, and 1/T off with it in the cell's middle.
+// The same when it is over within an SCLK period: a write an edge of clk_ref, at any edge of the period. The position
+// comes from 4, held at 0 across the compare in cell 2, else across that in the middle of its cell.
 TEST_F(ChannelFineCompareTest, WhatIsOverWithinAnSclkPeriodLeavesNothing) {
+  constexpr unsigned kEdges = 8;  // of an SCLK period
+  constexpr Tick kSlow = kEdges * kTicksPerRef;
+  constexpr std::uint32_t kReset = kWord | kCounterReset, kMldt = decode_mode(regs::decode::kMldt) | kPfm | kFine;
+  struct Write {
+    unsigned channel;
+    std::uint32_t word;
+  };
   struct Row {
     const char* what;
-    std::uint32_t word;
-    int cell, steps;  // of the compare; until the position is beyond it again
+    unsigned channel;      // that compares
+    std::uint32_t source;  // of channel 2
+    int cell;
+    std::vector<Write> writes;
   };
-  for (const Row& row : {Row{"counter reset", kWord | kCounterReset, 2, 3},
-                         Row{"MLDT", decode_mode(regs::decode::kMldt) | kPfm | kFine, 4, 1}, Row{"1/T off", kX4, 4, 1}})
-    for (const unsigned channel : {1u, 2u})
-      for (const bool up : {true, false})
-        for (int start = 0; start < kSclk / kTicksPerRef; ++start) {
-          const std::string what = row.what + (", channel " + std::to_string(channel)) + (up ? ", up, " : ", down, ") +
-                                   std::to_string(start) + " edges on";
-          const int way = up ? 1 : -1;
-          control(1, kWord | kCounterReset);
-          control(2, kWord | kFromChannel1);
-          control(1, kWord);
-          steps(1, 4, up, 20 * kSclk);
-          rig_.ticks(100 * kSclk);
-          place(channel, {row.cell * way, 2048}, {100 * way, 0}, 5);
-          const bool before{equ(channel)};
-          rig_.ticks((2 * kSclk - rig_.now() % kSclk) + start * kTicksPerRef);
-          control(1, row.word);
-          control(1, kWord);
-          rig_.ticks(20 * kSclk);
-          EXPECT_EQ(bool{equ(channel)}, before) << what;
-          EXPECT_EQ(rig_.read(channel, words::kCompareB), static_cast<std::uint32_t>(100 * way) & kCounterMask) << what;
-          steps(1, row.steps, up, 20 * kSclk);
-          EXPECT_NE(bool{equ(channel)}, before) << what << ": behind it motion counts";
-        }
+  const Row rows[] = {
+      {"reset", 1, kFromChannel1, 2, {{1, kReset}, {1, kWord}}},
+      {"MLDT", 1, kFromChannel1, 4, {{1, kMldt}, {1, kWord}}},
+      {"1/T off", 1, kFromChannel1, 4, {{1, kX4}, {1, kWord}}},
+      {"reset of the source", 2, kFromChannel1, 2, {{1, kReset}, {1, kWord}}},
+      {"MLDT of the source", 2, kFromChannel1, 4, {{1, kMldt}, {1, kWord}}},
+      {"1/T of the source off", 2, kFromChannel1, 4, {{1, kX4}, {1, kWord}}},
+      {"reset and away", 2, 0, 2, {{2, kReset | kFromChannel1}, {2, kWord}}},
+      {"MLDT and away", 2, 0, 4, {{2, kMldt | kFromChannel1}, {2, kWord}}},
+      {"away, reset", 2, kFromChannel1, 2, {{2, kWord}, {1, kReset}, {1, kWord}, {2, kWord | kFromChannel1}}},
+      {"away, MLDT", 2, kFromChannel1, 4, {{2, kWord}, {1, kMldt}, {1, kWord}, {2, kWord | kFromChannel1}}},
+      {"away, 1/T off", 2, kFromChannel1, 4, {{2, kWord}, {1, kX4}, {2, kWord | kFromChannel1}, {1, kWord}}},
+  };
+  rig_.write(ic_words::kClockControl, ic_words::clock_control::kSclkDivider.set(kServoEachPhase, 3));
+  for (const Row& row : rows)
+    for (const bool up : {true, false})
+      for (unsigned start = 0; start < kEdges; ++start) {
+        const std::string what = row.what + std::string(up ? ", up, " : ", down, ") + std::to_string(start);
+        const int way = up ? 1 : -1;
+        const unsigned moves = row.source == 0 ? 2 : 1;
+        control(1, kReset);
+        control(2, kReset);
+        control(1, kWord);
+        control(2, kWord | row.source);
+        steps(moves, 4, up, 20 * kSlow);
+        rig_.ticks(50 * kSlow);
+        place(row.channel, {row.cell * way, 2048}, {100 * way, 0}, 5);
+        const bool before{equ(row.channel)};
+        while (rig_.now() % kSlow != 0) rig_.tick();
+        rig_.ticks(start * kTicksPerRef);
+        for (const Write& w : row.writes) control(w.channel, w.word);
+        rig_.ticks(20 * kSlow);
+        EXPECT_EQ(bool{equ(row.channel)}, before) << what;
+        EXPECT_EQ(rig_.peek(row.channel, words::kCompareB), static_cast<std::uint32_t>(100 * way) & kCounterMask)
+            << what;
+        steps(moves, row.cell == 2 ? 3 : 1, up, 20 * kSlow);
+        EXPECT_NE(bool{equ(row.channel)}, before) << what << ": behind it motion counts";
+      }
 }
 
 // 1/T of channel 1 comes and goes while channel 2 compares its position: from the far end of the cell over the compare
@@ -273,6 +299,48 @@ TEST_F(ChannelFineCompareTest, TurningHardware1TOfTheSourceLeavesNothing) {
     }
     steps(1, 1, up, 20 * kSclk);
     EXPECT_NE(bool{equ(2)}, before) << "behind it motion counts";
+  }
+}
+
+// A count from 4 to 5 on one SCLK edge, which the next finds beyond {4, 4095}, and a write of X:+5 at any edge of
+// clk_ref about it. What comes before the count, or when it has been found, takes nothing away; what comes between
+// does.
+TEST_F(ChannelFineCompareTest, AWriteTakesAwayTheCountThatIsNotFoundYetAndNoOther) {
+  constexpr int kEdges = kSclk / kTicksPerRef;
+  struct Row {
+    const char* what;
+    unsigned channel;  // that compares channel 1's position
+    std::uint32_t before;
+    std::vector<std::pair<unsigned, std::uint32_t>> writes;
+    int lost;
+  };
+  const Row rows[] = {
+      {"1/T on", 1, kX4, {{1, kWord}}, 0},  // without it the count itself turns EQU
+      {"1/T of the source on", 2, kX4, {{1, kWord}}, kEdges},
+      {"1/T of the source off", 2, kWord, {{1, kX4}}, kEdges},
+      // one more: channel 2 has no count of its own
+      {"away and back", 2, kWord, {{2, kWord}, {2, kWord | kFromChannel1}}, kEdges + 1},
+      {"1/T off and on", 2, kWord, {{2, kX4 | kFromChannel1}, {2, kWord | kFromChannel1}}, kEdges},
+      {"AENA", 2, kWord, {{2, kWord | kFromChannel1 | field::kAena.mask()}, {1, kWord | field::kAena.mask()}}, 0},
+  };
+  for (const Row& row : rows) {
+    int lost = 0;
+    for (int n = 0; n < 10 * kEdges; ++n) {
+      control(1, kWord | kCounterReset);
+      control(2, kWord | kFromChannel1);
+      control(1, kWord);
+      steps(1, 4, true, 20 * kSclk);
+      place(row.channel, {4, 4095}, {100, 0}, 5);
+      control(1, row.before);
+      rig_.ticks(20 * kSclk);
+      while (rig_.now() % kSclk != 0) rig_.tick();
+      const bool before{equ(row.channel)};
+      step(1, true, n * kTicksPerRef);
+      for (const auto& [channel, word] : row.writes) control(channel, word);
+      rig_.ticks(20 * kSclk);
+      lost += bool{equ(row.channel)} == before;
+    }
+    EXPECT_EQ(lost, row.lost) << row.what;
   }
 }
 

@@ -77,13 +77,15 @@ class Stimulus {
     hall_[ch - 1] = mode == regs::decode::kHallCw || mode == regs::decode::kHallCcw;
     if (!chance(6)) word &= ~kCounterReset;
     if (chance(2)) word &= ~kFine;
-    rig_.write(ch, words::kControl, control_[ch - 1] = word);
+    rig_.write(ch, words::kControl, word);
   }
   // Something else for a few edges of clk_ref: over before SCLK sees it, or not.
   void blink(unsigned ch) {
-    const std::uint32_t word = control_[ch - 1];
-    const std::uint32_t other[] = {word ^ kFine, word ^ kCounterReset, field::kDecode.set(word, regs::decode::kMldt)};
-    rig_.write(ch, words::kControl, other[value(2)]);
+    const std::uint32_t word = rig_.peek(ch, words::kControl);
+    const std::uint32_t other[] = {word ^ kFine, word ^ kCounterReset, word ^ kFromChannel1,
+                                   field::kDecode.set(word, regs::decode::kMldt)};
+    rig_.write(ch, words::kControl, other[value(3)]);
+    if (chance(4)) blink(ch == 1 ? between(2, 4) : 1);
     if (chance(2)) rig_.ref(static_cast<int>(between(1, 3)));
     rig_.write(ch, words::kControl, word);
   }
@@ -109,7 +111,7 @@ class Stimulus {
       case 4:
         if (chance(4))
           control(ch);
-        else if (chance(2))
+        else
           blink(ch);
         break;
       case 5:
@@ -148,7 +150,6 @@ class Stimulus {
   std::mt19937 random_;
   Tick next_[4] = {}, speed_[4] = {};
   unsigned place_[4] = {};
-  std::uint32_t control_[4] = {};
   bool up_[4] = {}, hall_[4] = {};
 };
 
