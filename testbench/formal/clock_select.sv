@@ -18,6 +18,9 @@
 // fault R9: a net without a driver keeps its last level for one clk_ref (rtl/board/clock_select.sv)
 //   - phase_idle_q  <= phase_idle_d;
 //   + phase_idle_q  <= phase_idle_d & (drivers_q == drivers_d);
+// fault R11: SERVO is told to be driven when it is not (rtl/board/clock_select.sv)
+//   - servo_oe_q <= ~servo_idle_q;
+//   + servo_oe_q <= servo_idle_q;
 `default_nettype none
 
 module clock_select_rules (
@@ -39,11 +42,12 @@ module clock_select_rules (
   // guarantee: one reset
   always_comb assume (rst_ni == started_q);
 
-  logic       phase, servo, conflict;
+  logic       phase, servo, phase_driven, servo_driven, conflict;
   logic [4:0] source;
   clock_select dut (.clk_pwm_i(clk_pwm), .clk_ref_i(clk_ref), .rst_ni, .fitted_i, .phase_i, .servo_i, .phase_oe_i,
                     .servo_oe_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .phase_o(phase), .servo_o(servo),
-                    .phase_source_o(source), .conflict_o(conflict));
+                    .phase_oe_o(phase_driven), .servo_oe_o(servo_driven), .phase_source_o(source),
+                    .conflict_o(conflict));
   // From inside: who is let onto each net.
   (* hierconn *) wire logic [21:0] \dut.phase_grant_q ;
   (* hierconn *) wire logic [21:0] \dut.servo_grant_q ;
@@ -103,6 +107,7 @@ module clock_select_rules (
   logic        phase_next, servo_next, phase_next_q = 1'b1, servo_next_q = 1'b1;  // what the nets take next
   assign phase_next = \dut.phase_idle_q | (|(\dut.phase_grant_q & \dut.level_q [21:0]));
   assign servo_next = \dut.servo_idle_q | (|(\dut.servo_grant_q & \dut.level_q [43:22]));
+  logic        phase_driven_q = 1'b0, servo_driven_q = 1'b0;
   logic        phase_wire_q = 1'b1, servo_wire_q = 1'b1, phase_turns_q = 1'b1, servo_turns_q = 1'b1, passed_q = 1'b0;
   logic [21:0] phase_oe, servo_oe;
   assign phase_oe = phase_oe_i & fitted_i;
@@ -117,6 +122,7 @@ module clock_select_rules (
       phase_wire_q <= &(phase_i | ~phase_oe);
       servo_wire_q <= &(servo_i | ~servo_oe);
       {phase_next_q, servo_next_q} <= {phase_next, servo_next};
+      {phase_driven_q, servo_driven_q} <= {outside_q || phase_oe_q != 22'h0, outside_q || servo_oe_q != 22'h0};
     end
     passed_q <= passed_q | (phase_drivers[2] & servo_drivers[2]);
     if (ext_clock_i || outside_q || (phase_oe & (phase_oe - 22'h1)) != 22'h0 ||
@@ -202,6 +208,10 @@ module clock_select_rules (
       R10: assert (servo_next == servo_wire_q && servo == servo_next_q);
       C10: cover (!servo && \dut.servo_grant_q [3] && passed_q);
     end
+
+    // R11: Whether an IC or the outside drives a net is told with the level.
+    R11: assert ({phase_driven, servo_driven} == {phase_driven_q, servo_driven_q});
+    C11: cover (phase_driven && !servo_driven);
   end
 
 endmodule : clock_select_rules
