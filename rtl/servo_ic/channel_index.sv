@@ -32,19 +32,19 @@ module channel_index (
   localparam logic [1:0] StateW = 2'b01;
 
   logic       a, b, c;
-  logic [3:0] seen_q, part_q, state;  // per AB state, and C in that state: bit 0 W, 1 V, 2 U, 3 C
+  logic [3:0] seen_q, part_q, part, state;  // per AB state, and C in that state: bit 0 W, 1 V, 2 U, 3 C
   assign a = level_i[A];
   assign b = level_i[B];
-  assign c = demux_i ? part_q[3] : level_i[C];
+  assign state = {{a, b} == StateC, {a, b} == StateU, {a, b} == StateV, {a, b} == StateW};
+  assign part  = (part_q & ~state) | (state & {4{level_i[C]}});
+  assign c = demux_i ? part[3] : level_i[C];
 
   logic equal, equal_q;
   // Nobody looks at these between two SCLK edges: docs/simulation-speed.md.
   always_comb begin
-    state   = 4'd0;
     equal   = 1'b0;
     index_o = 1'b0;
     if (ce_i) begin
-      state   = {{a, b} == StateC, {a, b} == StateU, {a, b} == StateV, {a, b} == StateW};
       equal   = (level_i[T] == level_i[U]) | (level_i[V] == level_i[W]);
       index_o = gated_i ? c & (gate_low_i ? ~a & ~b : a & b) : c;
     end
@@ -58,7 +58,7 @@ module channel_index (
       equal_q <= 1'b0;
     end else if (ce_i && ready_i) begin
       seen_q  <= seen_q | state;
-      part_q  <= (part_q & ~state) | (state & {4{level_i[C]}});
+      part_q  <= part;
       equal_q <= equal;
     end
   end
@@ -66,7 +66,7 @@ module channel_index (
   always_comb begin
     level_o    = level_i;
     level_o[C] = c;
-    if (demux_i) {level_o[U], level_o[V], level_o[W]} = part_q[2:0];
+    if (demux_i) {level_o[U], level_o[V], level_o[W]} = part[2:0];
   end
   assign incomplete_o = seen_q != 4'hF;
 

@@ -113,7 +113,7 @@ module servo_channel (
   );
   channel_subcount u_subcount (
     .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
-    .enable_i(fine & ~mldt), .count_i(count),
+    .enable_i(fine & ~still_o), .count_i(count),
     .reversed_i(down ^ last_down), .down_i(last_down), .down_new_i(down), .t1_i(t1),
     .fraction_o(fraction), .fraction_d_o(fraction_d)
   );

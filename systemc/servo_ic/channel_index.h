@@ -10,7 +10,7 @@ class ChannelIndex {
   // Inputs as the status word shows them, from the filtered pins.
   unsigned level(unsigned pins, bool demux) const {
     constexpr unsigned kReplaced = 1u << kEncC | 7u << kW;
-    return demux ? (pins & ~kReplaced) | (part_ & 7) << kW | (part_ >> 3) << kEncC : pins;
+    return demux ? (pins & ~kReplaced) | (part(pins) & 7) << kW | (part(pins) >> 3) << kEncC : pins;
   }
   static bool index(unsigned level, bool gated, bool gate_low) {
     const bool c = is(level, kEncC);
@@ -20,11 +20,8 @@ class ChannelIndex {
 
   // One SCLK edge; returns true when it sees an encoder loss.
   bool sclk(unsigned pins) {
-    // W in state 01 of {A, B}, V in 00, U in 10, C in 11: bits 0..3 by {B, A}.
-    constexpr unsigned kState[4] = {2, 4, 1, 8};
-    const unsigned state = kState[pins & 3];
-    seen_ |= state;
-    part_ = (part_ & ~state) | (is(pins, kEncC) ? state : 0);
+    seen_ |= state(pins);
+    part_ = part(pins);
     const bool equal = is(pins, kT) == is(pins, kU) || is(pins, kV) == is(pins, kW);
     const bool loss = equal && equal_;
     equal_ = equal;
@@ -32,6 +29,13 @@ class ChannelIndex {
   }
 
  private:
+  // W in state 01 of {A, B}, V in 00, U in 10, C in 11: bits 0..3 by {B, A}.
+  static unsigned state(unsigned pins) {
+    constexpr unsigned kState[4] = {2, 4, 1, 8};
+    return kState[pins & 3];
+  }
+  // What the line carries in each state: now in the present one, when it was last there in the others.
+  unsigned part(unsigned pins) const { return (part_ & ~state(pins)) | (is(pins, kEncC) ? state(pins) : 0); }
   static bool is(unsigned pins, ChannelPin pin) { return (pins >> pin & 1) != 0; }
 
   unsigned seen_ = 0, part_ = 0;

@@ -141,7 +141,7 @@ class ServoChannel {
   bool is(const regs::Field& field) const { return field.is_set(control_); }
   std::uint32_t decode() const { return channel_control::kDecode.get(control_); }
   bool mldt() const { return decode() == regs::decode::kMldt; }
-  bool has_fraction() const { return fine() && !mldt(); }
+  bool has_fraction() const { return fine() && !still(); }
   unsigned fraction() const { return counter_.down() ? 4095 - subcount_.e() : subcount_.e(); }
   std::uint32_t status(bool trip) const;
 

@@ -4,10 +4,11 @@ namespace brick {
 
 std::uint16_t Capture::shown(std::uint16_t level) const {
   if ((gate & 2) == 0) return level;
+  const unsigned part = parts(level);
   constexpr unsigned kReplaced = 1u << kEncC | 1u << kU | 1u << kV | 1u << kW;
   // {A,B}: 11 -> C, 10 -> U, 00 -> V, 01 -> W
-  return static_cast<std::uint16_t>((level & ~kReplaced) | bit(part_, 3) << kEncC | bit(part_, 2) << kU |
-                                    bit(part_, 0) << kV | bit(part_, 1) << kW);
+  return static_cast<std::uint16_t>((level & ~kReplaced) | bit(part, 3) << kEncC | bit(part, 2) << kU |
+                                    bit(part, 0) << kV | bit(part, 1) << kW);
 }
 
 bool Capture::condition(std::uint16_t level) const {
@@ -32,10 +33,9 @@ bool Capture::condition(std::uint16_t level) const {
 }
 
 bool Capture::step(std::uint16_t level, std::uint32_t position) {
-  const std::uint16_t now = shown(level);  // what was latched up to here
-  const unsigned state = bit(level, kEncA) << 1 | bit(level, kEncB);
-  seen_ |= 1u << state;
-  part_ = (part_ & ~(1u << state)) | bit(level, kEncC) << state;
+  seen_ |= 1u << state(level);
+  part_ = parts(level);
+  const std::uint16_t now = shown(level);
   const bool term = condition(now), by_hall = gated && (code & 1) == 0;
   constexpr unsigned kHalls = 1u << kU | 1u << kV | 1u << kW;
   const bool event = by_hall ? ((now ^ last_) & kHalls) != 0 : term && (level_rule || !term_);

@@ -36,11 +36,15 @@ class Capture {
 
  private:
   static constexpr unsigned bit(unsigned level, unsigned pin) { return level >> pin & 1; }
+  static constexpr unsigned state(unsigned level) { return bit(level, kEncA) << 1 | bit(level, kEncB); }
+  constexpr unsigned parts(unsigned level) const {
+    return (part_ & ~(1u << state(level))) | bit(level, kEncC) << state(level);
+  }
   bool condition(std::uint16_t level) const;
 
   std::uint16_t last_;  // as shown
   unsigned seen_ = 0;   // AB states since reset, bit 2A + B
-  unsigned part_ = 0;   // C line in each of them
+  unsigned part_ = 0;   // C line in each of them, at the last SCLK edge
   bool term_ = false, armed_ = true, captured_ = false, gated_index_ = false;
   std::uint32_t position_ = 0;
   unsigned hall_ = 0;

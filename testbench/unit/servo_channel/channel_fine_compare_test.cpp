@@ -302,6 +302,22 @@ TEST_F(ChannelFineCompareTest, TurningHardware1TOfTheSourceLeavesNothing) {
   }
 }
 
+// Pulses that begin at 0, where the counter was held: the first count up leaves it.
+TEST_F(ChannelFineCompareTest, ACompareAtZeroIsLeftBehindACounterReset) {
+  control(1, kWord | kCounterReset);
+  control(1, kWord);
+  steps(1, 4, true, 20 * kSclk);
+  rig_.ticks(100 * kSclk);
+  control(1, kWord | kCounterReset);
+  place(1, {0, 0}, {100, 0}, 5);
+  control(1, kWord);
+  rig_.ticks(8 * kSclk);
+  const bool before{equ(1)};
+  step(1, true);
+  EXPECT_NE(bool{equ(1)}, before);
+  EXPECT_EQ(rig_.peek(1, words::kCompareB), 105u);
+}
+
 // A count from 4 to 5 on one SCLK edge, which the next finds beyond {4, 4095}, and a write of X:+5 at any edge of
 // clk_ref about it. What comes before the count, or when it has been found, takes nothing away; what comes between
 // does.

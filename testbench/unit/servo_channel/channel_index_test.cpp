@@ -104,6 +104,25 @@ TEST_F(ChannelIndexTest, DemultiplexedLinesAreTheTriggersInputs) {
   EXPECT_FALSE(captures(halls, 2 | 1u << kC, 2 | 1u << kC | 1u << kU)) << "the pin U is out of the game";
 }
 
+// With the gate too the index is that of the 11 in which the line has it: neither the next one's, at which the trigger
+// has been armed anew, nor a later SCLK edge's: the position is that of the count into the state.
+TEST_F(ChannelIndexTest, TheGatedIndexOfADemultiplexedLineIsThatOfItsOwnState) {
+  const std::uint32_t word = kX4 | kIndex | kGated | kDemux;
+  pins(0);
+  control(1, word | kCounterReset);
+  control(1, word);
+  for (int cycle = 0; cycle < 6; ++cycle) {
+    const bool has_index = cycle % 2 == 1;
+    for (const unsigned ab : {1u, 3u, 2u, 0u}) {
+      pins(ab | (ab == 3 && has_index ? 1u << kC : 0));
+      EXPECT_EQ(bool{status(1, status_bit::kCaptured)}, has_index && ab != 1) << cycle << ' ' << ab;
+    }
+    if (!has_index) continue;
+    EXPECT_TRUE(status(1, status_bit::kCapturedGatedIndex));
+    EXPECT_EQ(rig_.read(1, words::kFlagPosition), static_cast<std::uint32_t>(4 * cycle + 2));
+  }
+}
+
 TEST_F(ChannelIndexTest, EachOfTheFourStatesCompletesTheDemultiplexing) {
   for (unsigned missing = 0; missing < 4; ++missing) {
     rig_.in.pins[0] = missing ^ 3;

@@ -253,6 +253,23 @@ TEST_F(ChannelMldtTest, HasNoFraction) {
   }
 }
 
+// A counter that is held at 0 has none either, then and until the next count behind.
+TEST_F(ChannelMldtTest, NorHasAHeldCounter) {
+  for (const bool up : {true, false}) {
+    control(1, kX4 | kFine);
+    steps(1, 4, up, 100 * kSclk);
+    const std::uint32_t none = up ? 0 : 4095;
+    ASSERT_NE(fine2::kServo.get(timer2()), none) << "it has one by now";
+    for (const std::uint32_t word : {kX4 | kFine | kCounterReset, kX4 | kFine}) {
+      control(1, word);
+      rig_.ticks(100 * kSclk + 3 * kPhase);
+      EXPECT_EQ(fine2::kServo.get(timer2()), none) << (up ? "up" : "down") << (word == (kX4 | kFine) ? ", let go" : "");
+    }
+    steps(1, 2, up, 100 * kSclk);
+    EXPECT_NE(fine2::kServo.get(timer2()), none) << "counts have one again";
+  }
+}
+
 // Into MLDT and out of it again seven reference edges later, at any edge of the division and of the catching up behind
 // a count and before it: from a change that meets an estimate on there is none until the next count.
 TEST_F(ChannelMldtTest, ComesAndGoesAtAnyEdgeOfTheDivision) {
