@@ -104,6 +104,20 @@ TEST_F(ChannelTest, HallEdgeCaptureKeepsUvw) {
   }
 }
 
+// Counts 100 SCLK apart and a flag half way to the next: 0.5 or so of a count.
+TEST_F(ChannelTest, AResetEmptiesTheCapturedPositionAndItsFraction) {
+  control(1, kX4 | kFlag | kFine);
+  steps(1, 5, true, 100 * kSclk);
+  step(1, true, 50 * kSclk);
+  pin(1, kHmfl, true);
+  ASSERT_EQ(rig_.peek(1, words::kFlagPosition), 6u);
+  ASSERT_NEAR(fine1::kCaptured.get(rig_.peek(1, words::kTimer1)), 2048, 300);
+  rig_.reset();
+  control(1, kX4 | kFlag | kFine);
+  EXPECT_EQ(rig_.peek(1, words::kFlagPosition), 0u);
+  EXPECT_EQ(rig_.peek(1, words::kTimer1), 0u) << "the fractions of the capture and of compare B";
+}
+
 TEST_F(ChannelTest, DemultiplexedLineSetsCuvwByAbState) {
   EXPECT_TRUE(status(1, status_bit::kDemuxInvalid));
   control(1, kX4 | kDemux);

@@ -136,6 +136,20 @@ TEST_F(ChannelIndexTest, EachOfTheFourStatesCompletesTheDemultiplexing) {
   }
 }
 
+// What the line carried before a reset is gone with it: C, U, V and W are low until a state has been seen again.
+TEST_F(ChannelIndexTest, AResetEmptiesTheDemultiplexedLines) {
+  for (const bool line : {false, true}) {
+    control(1, kX4 | kDemux);
+    for (const unsigned ab : {0u, 1u, 3u, 2u, 0u}) pins(line ? ab | 1u << kC : ab);
+    const std::uint32_t lines =
+        status_bit::kChc.mask() | status_bit::kFlagU.mask() | status_bit::kFlagV.mask() | status_bit::kFlagW.mask();
+    EXPECT_EQ(rig_.peek(1, words::kStatus) & lines, line ? lines : 0);
+    rig_.reset();
+    control(1, kX4 | kDemux);  // before the filter has a sample: all levels are 0, DMX_INV is 1
+    EXPECT_EQ(rig_.peek(1, words::kStatus), status_bit::kDemuxInvalid.mask()) << "line " << line;
+  }
+}
+
 TEST_F(ChannelIndexTest, OnlyTheReadOfTheCapturedPositionArms) {
   control(1, kX4 | kFlag);
   arm();
@@ -262,6 +276,24 @@ TEST_F(EncoderLossTest, EitherPairCountsInEachSample) {
   rig_.in.pins[0] ^= 1u << kW;
   rig_.ticks(kHold);
   EXPECT_TRUE(status(1, status_bit::kEncoderLoss));
+}
+
+// Equal levels before a reset are no sample before the first one behind it: of two changes an SCLK apart, at any place
+// behind the reset, one sample alone finds equal levels.
+TEST_F(EncoderLossTest, SamplesBeforeAResetDoNotCount) {
+  for (Tick delay = 0; delay < 2 * kHold; delay += kTicksPerRef) {
+    rig_.in.pins[0] = kSound ^ 1u << kT;
+    rig_.ticks(kHold);
+    ASSERT_TRUE(status(1, status_bit::kEncoderLoss));
+    rig_.in.pins[0] = kSound;
+    rig_.reset();
+    rig_.ticks(delay);
+    rig_.in.pins[0] ^= 1u << kT;
+    rig_.ticks(kSclk);
+    rig_.in.pins[0] ^= 1u << kU;
+    rig_.ticks(2 * kHold);
+    EXPECT_FALSE(status(1, status_bit::kEncoderLoss)) << delay << " ticks behind the reset";
+  }
 }
 
 // 0 in bit 7 clears, a 1 does not; a cause that lasts sets it again with the next SCLK. A clear at the edge of an SCLK,

@@ -393,6 +393,23 @@ TEST_F(ChannelSerialTest, AdcTakesItsLineAtOneEdgeOfEachBit) {
   }
 }
 
+// The streams begin with a rise of PHASE: a fall that comes before the first one, behind a reset in the middle of a
+// stream of ones, finds no bit of any.
+TEST_F(ChannelSerialTest, AdcWordsAreEmptyUntilAStreamHasCome) {
+  rig_.in.adc_a = rig_.in.adc_b = 0xF;
+  wait_for_phase(false);
+  wait_for_phase(true);
+  rig_.ticks(12 * 48);  // ADC_CLK has 48 ticks
+  rig_.reset();
+  rig_.ticks(1000);
+  rig_.in.phase = false;
+  rig_.ticks(kHold);
+  for (unsigned ch = 1; ch <= 4; ++ch) {
+    EXPECT_EQ(rig_.peek(ch, words::kAdcA), 0u) << "channel " << ch;
+    EXPECT_EQ(rig_.peek(ch, words::kAdcB), 0u) << "channel " << ch;
+  }
+}
+
 // What the written words hold, bit by bit, is in unit_register_bits. Here every other word is made to hold something,
 // the clocks are taken away so that it stays, and nothing that is written to it or beside it may show.
 TEST_F(ChannelTest, WritesOfReadOnlyWordsChangeNothing) {
