@@ -9,6 +9,7 @@
 extern "C" {
 #include "firmware/host/dpram_ascii.h"
 #include "firmware/host/dpram_responses.h"
+#include "firmware/host/program_texts.h"
 #include "firmware/variables/pq_variables.h"
 #include "rtl/regs/brick_regs.h"
 }
@@ -279,6 +280,39 @@ TEST_F(DpramAscii, TheActivePortIsTheLastThatHasBroughtACommand) {
   EXPECT_EQ(by_port("\x1A"), "\x06") << "the line that ends behind it makes the port active again";
   once({"SEND\"5\""});
   EXPECT_EQ(sent(), "5\r");
+}
+
+// host-bus:8.5/2. The program sends when P1 says so, which no host has written.
+TEST_F(DpramAscii, AfterControlZTextsAreDroppedUntilACommandComes) {
+  ASSERT_EQ(host("OPEN PLC 1 CLEAR"), "");
+  for (const char* line : {"IF(P1=1)", "SEND\"text\"", "P1=0", "ENDIF"}) ASSERT_EQ(host(line), "") << line;
+  ASSERT_EQ(host("CLOSE ENABLE PLC 1"), "");
+  const auto text = [] {
+    p_variable_write(1, 1.0);
+    for (int i = 0; i < 4; ++i) {  // behind a character the background waits 2 ms for the rest of its line
+      fake_hal_pass(3 * hal_cycles_per_ms());
+      background(1);
+    }
+    EXPECT_EQ(p_variable_read(1), 0.0);
+    return sent();
+  };
+  EXPECT_EQ(text(), "text\r");
+  for (const bool by_ram : {false, true}) {
+    if (by_ram)
+      ASSERT_TRUE(ram_host.control(0x1A));
+    else
+      host_port_character(0x1A);
+    background(2);
+    EXPECT_EQ(text(), "");
+    EXPECT_EQ(released(), (Lines{}));
+    EXPECT_EQ(by_port("P2=1"), "\x06");
+    EXPECT_EQ(text(), "text\r");
+  }
+  EXPECT_EQ(ram_host.ask("P2=1"), "");
+  EXPECT_EQ(text(), "");
+  EXPECT_EQ(released(), (Lines{"020D text"}));
+  program_texts_initialize();
+  EXPECT_EQ(text(), "text\r") << "after a start";
 }
 
 TEST_F(DpramAscii, CommandsOfProgramsAnswerWhereTheyName) {

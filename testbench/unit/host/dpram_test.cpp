@@ -374,11 +374,18 @@ TEST_F(DpramTest, ResetKeepsTheContent) {
 
 TEST_F(DpramSmallTest, WordsThatAreNotFittedReadZeroAndIgnoreWrites) {
   cpu_write(8191, 0x7777);
-  cpu_write(8192, 0x1111);
-  host_write(32767, 0x2222);
+  for (const unsigned word : {8192u, 16383u, 16384u, 24576u, 32767u}) {
+    for (const bool host : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << word << (host ? " by the host" : " by the CPU"));
+      if (host)
+        host_write(word, 0x2222);
+      else
+        cpu_write(word, 0x1111);
+      EXPECT_EQ(host_read(word), 0u);
+      EXPECT_EQ(cpu_read(word), 0u);
+    }
+  }
   EXPECT_EQ(host_read(8191), 0x7777u);
-  EXPECT_EQ(host_read(8192), 0u);
-  EXPECT_EQ(cpu_read(32767), 0u);
   EXPECT_EQ(cpu_read(0), 0u) << "no alias";
 }
 

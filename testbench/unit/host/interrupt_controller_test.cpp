@@ -215,6 +215,42 @@ TEST_F(InterruptControllerTest, SwitchingToLevelsAndBackKeepsTheLatch) {
   EXPECT_EQ(read(kStatus), 0u);
 }
 
+// host-bus:4.4, BREQ alone: whatever was chosen and latched before the set-up, and although all lines are high in it.
+TEST_F(InterruptControllerTest, SetUpAndServiceAreThoseOfTheDataSheet) {
+  write(kMask, 0xFF);
+  line(0xFF);
+  both_.ref(4);
+  write(kEdgeLevel, 0xF0);
+  both_.ref(4);
+  ASSERT_EQ(read(kStatus), 0xFFu);
+  write(kEdgeLevel, 0x00);
+  write(kStatus, 0x00);
+  write(kMask, kBreq);
+  both_.ref(4);
+  EXPECT_EQ(read(kStatus), 0u) << "these lines have risen before";
+  EXPECT_EQ(both_.get("request"), 0u);
+  for (const std::uint8_t service : {0x00, 0x02, 0xFF}) {
+    line(0x00);
+    both_.ref(4);
+    EXPECT_EQ(read(kSignal) & kBreq, 0u);
+    line(0xFF);
+    both_.ref(3);
+    EXPECT_EQ(read(kStatus), kBreq);
+    EXPECT_EQ(both_.get("request"), 1u);
+    write(kStatus, service);
+    EXPECT_EQ(read(kStatus), 0u) << "any value clears";
+    EXPECT_EQ(both_.get("request"), 0u);
+    both_.ref(4);
+    EXPECT_EQ(read(kStatus), 0u);
+  }
+  write(kMask, 0x00);
+  for (const bool high : {false, true}) {  // without interrupts
+    line(high ? kBreq : 0xFF & ~kBreq);
+    both_.ref(3);
+    EXPECT_EQ(read(kSignal) & kBreq, high ? kBreq : 0u);
+  }
+}
+
 TEST_F(InterruptControllerTest, MaskingClearsTheLatch) {
   write(kMask, 0xFF);
   line(0x81);

@@ -24,7 +24,7 @@ INSTANTIATE_TEST_SUITE_P(Engines, HostQueue, ::testing::Values(Engine::kSystemC)
 
 TEST_P(HostQueue, FullQueueTakesTwoCharactersAServoInterrupt) {
   start();
-  // A reply that nobody reads holds the background up, for half a second (host-bus:8.5/1).
+  // A reply that nobody reads holds the background up, for half a second (host-bus:8.5/3).
   put("P0..8191\r");
   wait(ms_to_ticks(20));
   constexpr unsigned kFull = 2048 + 2, kLines = 300;  // the queue, HORX and TX
