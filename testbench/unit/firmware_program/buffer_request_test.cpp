@@ -98,6 +98,8 @@ TEST_F(BufferRequest, StaysLowAtI17Lines) {
   EXPECT_EQ(host("PR"), "15");
   EXPECT_FALSE(breq());
   EXPECT_EQ(edges().size(), 1u);
+  ASSERT_EQ(host("X1Y2Z3"), "");
+  EXPECT_EQ(host("PR"), "16") << "lines, not words";
 }
 
 TEST_F(BufferRequest, RisesWhenFewerThanI16LinesAreLeft) {

@@ -372,17 +372,28 @@ TEST_F(DpramTest, ResetKeepsTheContent) {
   EXPECT_EQ(host_read(100), 0xCAFEu);
 }
 
+// The cells are there, and hold something before the strap says that they are not.
 TEST_F(DpramSmallTest, WordsThatAreNotFittedReadZeroAndIgnoreWrites) {
+  const auto strap = [this](bool is_small) {
+    both.in.small = is_small;
+    both.ticks(kRest);
+  };
   cpu_write(8191, 0x7777);
   for (const unsigned word : {8192u, 16383u, 16384u, 24576u, 32767u}) {
     for (const bool host : {false, true}) {
       SCOPED_TRACE(::testing::Message() << word << (host ? " by the host" : " by the CPU"));
+      strap(false);
+      cpu_write(word, 0x3333);
+      strap(true);
       if (host)
         host_write(word, 0x2222);
       else
         cpu_write(word, 0x1111);
       EXPECT_EQ(host_read(word), 0u);
       EXPECT_EQ(cpu_read(word), 0u);
+      strap(false);
+      EXPECT_EQ(host_read(word), 0x3333u);
+      strap(true);
     }
   }
   EXPECT_EQ(host_read(8191), 0x7777u);

@@ -249,6 +249,11 @@ TEST_F(InterruptControllerTest, SetUpAndServiceAreThoseOfTheDataSheet) {
     both_.ref(3);
     EXPECT_EQ(read(kSignal) & kBreq, high ? kBreq : 0u);
   }
+  write(kEdgeLevel, 0x00);
+  write(kStatus, 0x00);
+  write(kMask, kBreq);
+  both_.ref(4);
+  EXPECT_EQ(read(kStatus), 0u) << "high when it is enabled is no rise";
 }
 
 TEST_F(InterruptControllerTest, MaskingClearsTheLatch) {
