@@ -1,6 +1,8 @@
 // PWM and PFM pulses to the tick where the plain rates and widths leave the rule open: a dead time that begins anew,
 // pulses that join, the edge of DIR, an accumulator that stands, what rests at which level (servo-ic:5.11,
 // servo-ic:5.12, servo-ic:10/10).
+#include <vector>
+
 #include "testbench/unit/servo_channel/channel_fixture.h"
 
 namespace brick {
@@ -126,6 +128,44 @@ TEST_F(ChannelPulseTest, TurnaroundThatIsMovedBackIsNotASecondOne) {
     last = rig_.pwm(1, kTopA);
   }
   EXPECT_EQ(changes, 10);
+}
+
+// servo-ic:5.15/2: whatever FAULT, the limits and the other flags show, and however they change, the pins are those of
+// a channel that sees none. The same time behind a reset, two channels with PWM, two with DACs and pulses.
+TEST_F(ChannelPulseTest, FlagsActOnNoOutput) {
+  const auto run = [&](unsigned flags) {
+    while (rig_.now() % kTicksPerRef != 0) rig_.tick();
+    rig_.in.pins.fill(0);
+    rig_.reset();
+    rig_.write(ic_words::kClockControl, kServoEachPhase);
+    for (unsigned channel = 1; channel <= 4; ++channel) {
+      control(channel, kX4 | kEnable | kEquState | kEquWrite | (channel % 2 == 0 ? kDac | kPfm : 0));
+      rig_.write(channel, words::kOutA, 0x200000);
+      rig_.write(channel, words::kOutB, 0xE00000);
+      rig_.write(channel, words::kOutC, 0x100000);
+    }
+    std::vector<ChannelPins> seen;
+    for (Tick t = 0; t < 3 * 13057; ++t) {
+      if (t % 5000 == 100) rig_.in.pins.fill(flags);
+      if (t % 5000 == 4900) rig_.in.pins.fill(0);
+      rig_.tick();
+      seen.push_back(rig_.pins());
+    }
+    return seen;
+  };
+  const std::vector<ChannelPins> quiet = run(0);
+  std::uint32_t low = 0, high = 0, switched = 0;
+  for (const ChannelPins& pins : quiet) {
+    low |= ~pins.others;
+    high |= pins.others;
+    switched |= pins.pwm;
+  }
+  EXPECT_EQ(high & 0xFFAA0A, 0xFFAA0Au) << "EQU, AENA, DAC B, DAC A, PULSE";
+  EXPECT_EQ(low & 0xFF0000, 0u) << "EQU and AENA all the time";
+  EXPECT_EQ(switched & 0xFC0FC0u, 0u) << "no PWM";
+  EXPECT_NE(switched, 0u);
+  for (unsigned input = kFault; input < kChannelPins; ++input)
+    EXPECT_TRUE(run(1u << input) == quiet) << kChannelPinNames[input];
 }
 
 TEST_F(ChannelPulseTest, AmplifierEnableDoesNotGateThePwm) {

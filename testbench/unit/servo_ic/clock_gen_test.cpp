@@ -76,5 +76,42 @@ TYPED_TEST(ClockChainOn, AWordIsInUseFromTheSecondTickAfterItsWrite) {
   EXPECT_FALSE(this->rig.phase_oe() || this->rig.servo_oe());
 }
 
+// I7m00 too, at the bottom turnaround: from the bottom -(old + 2) to the new end, new + 1, are old + new + 3 ticks.
+// PHASE rises at each turnaround. 4 I7m00 + 6 is no multiple of 3, so that a bottom comes any number of ticks behind a
+// reference edge.
+TYPED_TEST(ClockChainOn, AMaximumCountIsInUseFromTheSecondTickAfterItsWrite) {
+  constexpr unsigned kOne = 20, kOther = 31;
+  constexpr Tick kMixed = kOne + kOther + 3;
+  const auto way = [](unsigned count) { return Tick{2 * count + 3}; };
+  const auto turnaround = [&] { return this->rig.edge_of(&ServoIcRig::phase, true, this->kLongest); };
+  this->rig.write(true, kClockWord, clock_word(0, 0, 0));
+  this->rig.run(20 * 13057);
+  this->rig.write(true, kPwmWord, pwm_word(kOther));
+  Tick last = turnaround(), top = turnaround();
+  for (; top - last != kMixed && this->rig.now() < 21 * 13057; top = turnaround()) last = top;
+  ASSERT_EQ(top - last, kMixed);
+  unsigned count = kOther;
+  Tick bottom = top + way(count);
+  for (const Tick lead : {1, 2, 3, 1, 2, 3}) {
+    const unsigned to = count == kOne ? kOther : kOne;
+    SCOPED_TRACE(::testing::Message() << lead << " ticks before a bottom, to " << to);
+    while (bottom - lead < this->rig.now() + kTicksPerRef || (bottom - lead) % kTicksPerRef != 0)
+      bottom += 2 * way(count);
+    this->rig.run(bottom - lead - 1 - this->rig.now());
+    this->rig.write(true, kPwmWord, pwm_word(to));
+    EXPECT_EQ(this->rig.now(), bottom - lead);
+    EXPECT_EQ(turnaround(), bottom);
+    if (lead < 2) {
+      EXPECT_EQ(turnaround(), bottom + way(count)) << "too late for this one";
+      bottom += 2 * way(count);
+      EXPECT_EQ(turnaround(), bottom);
+    }
+    EXPECT_EQ(turnaround(), bottom + kMixed);
+    bottom += kMixed + way(to);
+    EXPECT_EQ(turnaround(), bottom);
+    count = to;
+  }
+}
+
 }  // namespace
 }  // namespace brick
