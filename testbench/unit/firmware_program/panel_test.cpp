@@ -63,6 +63,10 @@ TEST_F(Panel, BreqShowsTheAddressedCoordinateSystemWhenI2Is1) {
   EXPECT_TRUE(breq());
   ASSERT_EQ(host("I2=0"), "");
   EXPECT_FALSE(breq());
+  ASSERT_EQ(host("I2=3"), "");
+  EXPECT_TRUE(breq()) << "bit 0 alone says it";
+  ASSERT_EQ(host("I2=2"), "");
+  EXPECT_FALSE(breq());
 }
 
 TEST_F(Panel, BoardsWithoutAPanelAlwaysShowTheAddressedCoordinateSystem) {
