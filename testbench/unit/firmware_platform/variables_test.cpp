@@ -155,6 +155,7 @@ TEST(IVariables, ConfigurationReportIsReadOnly) {
   Controller c(kServoIc0 | kServoIc2 | kServoIc3Starred | kMacroIc1);
   EXPECT_EQ(c.line("I4900"), "$2005");  // IC 0, IC 2, IC 3* = bit 13
   EXPECT_EQ(c.line("I4902 I4908"), "$2|$10800");
+  EXPECT_EQ(c.line("I4901 I4903"), "$2005|$2") << "types: all 1, which is DSPGATE2 of a MACRO IC";
   EXPECT_EQ(c.send("I4900=0\r"), "\x06");
   EXPECT_EQ(c.line("I4900"), "$2005");
   EXPECT_EQ(c.line("I20 I21"), "$79400|$0");
