@@ -30,6 +30,8 @@ else()
   set(BRICK_RTL_OPT -O1)
   set(BRICK_RTL_SLOW_OPT -O0)
 endif()
+# What does little while a simulation runs, and costs the compiler much: pages, commands, files of boards, benches.
+set(BRICK_SHORT_OPT $<$<CONFIG:Release>:-O1>)
 set(BRICK_RTL_ARGS "")  # verilate(... VERILATOR_ARGS ... ${BRICK_RTL_ARGS})
 set(BRICK_RTL_BITS "")  # of small modules: brick_add_rtl_module(... ARGS ${BRICK_RTL_BITS})
 if(BRICK_COVERAGE)
