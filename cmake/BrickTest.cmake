@@ -1,9 +1,11 @@
 # brick_add_test(NAME unit_ticks SOURCES a.cpp LIBRARIES brick_core): a GoogleTest executable, one ctest entry a test,
 # label `unit`. SANITIZED: under the address and undefined-behaviour sanitizers in every build, whatever the preset.
+# QUICK: its tests take little time, so the compiler shall take little too: not optimised.
 # TOGETHER [ALONE a.cpp ...]: brick_together(), names that are local to a file differ in all the others.
 # brick_sanitize(TARGET): the same for a library; what links it is sanitized too.
-# brick_test_code(TARGET): how code that only tests use is compiled. It is most of the compiler's work and little of the
-# processor's later on, so it is optimised less, and the headers that nearly all of it includes are compiled once.
+# brick_test_code(TARGET [SANITIZED | QUICK]): how code that only tests use is compiled. It is most of the compiler's
+# work and little of the processor's later on, so it is optimised less, and the headers that nearly all of it includes
+# are compiled once.
 include(GoogleTest)
 function(brick_sanitize target)
   target_compile_options(${target} PUBLIC ${BRICK_SANITIZER_FLAGS} -O1 -g1)
@@ -13,6 +15,7 @@ endfunction()
 # What sanitized tests test stands in libraries, at -O1. In the tests the checks of each pointer, for null and
 # for alignment, are a third of the compiler's work: the address sanitizer finds null too, and ./dev asan has both.
 set(test_options $<$<CONFIG:Release>:-O1>)
+set(quick_test_options $<$<CONFIG:Release>:-O0>)
 set(sanitized_test_options -O0)  # behind brick_sanitize(), whose -O1 would undo it
 if(NOT BRICK_SANITIZE)
   list(APPEND sanitized_test_options -fno-sanitize=null,alignment)
@@ -27,12 +30,14 @@ brick_add_headers(brick_sanitized_headers <systemc>)
 brick_sanitize(brick_sanitized_headers)
 brick_add_test_headers(brick_test_headers <systemc>)
 target_compile_options(brick_test_headers PRIVATE ${test_options})
+brick_add_test_headers(brick_quick_test_headers <systemc>)
+target_compile_options(brick_quick_test_headers PRIVATE ${quick_test_options})
 brick_add_test_headers(brick_sanitized_test_headers)
 brick_sanitize(brick_sanitized_test_headers)
 target_compile_options(brick_sanitized_test_headers PRIVATE ${sanitized_test_options})
 
 function(brick_test_code target)
-  cmake_parse_arguments(T "SANITIZED" "" "" ${ARGN})
+  cmake_parse_arguments(T "SANITIZED;QUICK" "" "" ${ARGN})
   target_compile_options(${target} PRIVATE ${BRICK_WARNINGS})
   target_link_libraries(${target} PRIVATE GTest::gtest GTest::gmock fmt::fmt)
   if(T_SANITIZED)
@@ -40,26 +45,33 @@ function(brick_test_code target)
     target_compile_options(${target} PRIVATE ${sanitized_test_options})
     target_precompile_headers(${target} REUSE_FROM brick_sanitized_test_headers)
   else()
-    target_compile_options(${target} PRIVATE ${test_options})
-    target_precompile_headers(${target} REUSE_FROM brick_test_headers)
+    if(T_QUICK)
+      target_compile_options(${target} PRIVATE ${quick_test_options})
+      target_precompile_headers(${target} REUSE_FROM brick_quick_test_headers)
+    else()
+      target_compile_options(${target} PRIVATE ${test_options})
+      target_precompile_headers(${target} REUSE_FROM brick_test_headers)
+    endif()
     target_link_libraries(${target} PRIVATE brick_systemc)  # its headers are among them
   endif()
 endfunction()
 
 function(brick_add_test)
-  cmake_parse_arguments(T "SANITIZED;TOGETHER" "NAME;TIMEOUT" "SOURCES;LIBRARIES;ALONE" ${ARGN})
+  cmake_parse_arguments(T "SANITIZED;QUICK;TOGETHER" "NAME;TIMEOUT" "SOURCES;LIBRARIES;ALONE" ${ARGN})
   if(NOT T_TIMEOUT)
     set(T_TIMEOUT 300)
     if(BRICK_COVERAGE)
       set(T_TIMEOUT 1800)
     endif()
   endif()
-  set(sanitized "")
+  set(kind "")
   if(T_SANITIZED)
-    set(sanitized SANITIZED)
+    set(kind SANITIZED)
+  elseif(T_QUICK)
+    set(kind QUICK)
   endif()
   add_executable(${T_NAME} ${T_SOURCES})
-  brick_test_code(${T_NAME} ${sanitized})
+  brick_test_code(${T_NAME} ${kind})
   if(T_TOGETHER)
     brick_together(${T_NAME} ALONE ${T_ALONE})
   endif()
