@@ -129,7 +129,8 @@ class Solvers:
 
 
 def build(rules, solvers, fault=None):
-    """Models of the design: .smt2 with all rules, an .aig of each rule and cover; with a fault of its rule alone."""
+    """Models of the design: .smt2 with all rules, an .aig of each rule and cover; with a fault both are of its rule and
+    what that one looks at, alone."""
     packages, modules = rtl_files(rules.root)
     sources = {str(f): rules.root / f for f in packages + modules if f.stem not in SIMULATION_ONLY}
     stem = f"{rules.name}.fault" if fault else rules.name
@@ -140,13 +141,14 @@ def build(rules, solvers, fault=None):
         sources[edit.file] = solvers.out / f"{stem}.{pathlib.Path(edit.file).name}"
         sources[edit.file].write_text(text.replace(edit.old, edit.new))
     labels = [fault.rule] if fault else [*rules.english, *rules.covers]
+    alone = f"delete t:$assert t:$cover %u */{fault.rule} %d;" if fault else ""
     (solvers.out / f"{stem}.cover.v").write_text(COVER)  # other proofs are made beside this one
     expose = "setundef -undriven -expose;" if rules.free else ""  # what is free has a name in traces
     script = [f"read_verilog -sv -formal -defer {' '.join(map(str, sources.values()))}",
               *(f"read_verilog -sv -formal -defer {path}" for path in sorted((rules.root / COMMON).glob("*.sv"))),
               f"read_verilog -sv -formal {rules.root / rules.path}; hierarchy -check -top {rules.name}_rules",
               *(f"select -assert-min 1 t:{module}; delete t:{module}" for module in rules.free),
-              "proc -norom; setattr -mod -unset keep_hierarchy; flatten",
+              f"proc -norom; setattr -mod -unset keep_hierarchy; flatten; {alone} opt_clean",
               f"{expose} setundef -undriven -anyseq; {PREPARE[rules.clocks]}; opt_clean",
               f"write_smt2 -wires {stem}.smt2",
               f"techmap -map {stem}.cover.v; techmap; abc -g AND -fast; opt_clean; design -save m"]
@@ -157,7 +159,7 @@ def build(rules, solvers, fault=None):
     model.unlink(missing_ok=True)
     said = solvers.run("yosys", "-q", "-p", "; ".join(script))
     asserted = re.findall(r"^; yosys-smt2-assert \d+ (\S+)", model.read_text() if model.exists() else "", re.M)
-    if re.search(r"^ERROR", said, re.M) or sorted(asserted) != sorted(rules.english):
+    if re.search(r"^ERROR", said, re.M) or sorted(asserted) != sorted([fault.rule] if fault else rules.english):
         raise Failed(f"{rules.path}: Yosys made no model of all rules, but of {asserted}\n{said[-2000:]}")
     return stem
 

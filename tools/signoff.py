@@ -45,7 +45,8 @@ What stands behind each requirement of `docs/requirements.txt`: the rules of the
 - **tests**: benches by name, the others counted; all by name in [traceability](docs/traceability.md). A test has passed
   when it has on each engine that it ran on.
 - **covers**: counted of asked for, in all runs together ([covers](docs/covers.md)), or why none are.
-- **proof**: how many rules of each module are proved without a bound; each run of the suite proves them anew.
+- **proof**: how many rules of each module are proved without a bound; each run of the suite proves them anew, of the
+  longest files each night ([proofs](docs/formal.md)).
 - **score**: killed of all mutants that count, of the module or folder of the firmware. Stale: the file has changed
   since. Without a figure: no mutant was judged yet.
 - **measured at**: the commits of tests, covers and scores. A row of one commit is signed off of one tree.
