@@ -55,8 +55,11 @@ foreach(file brick brick-rtl)
 endforeach()
 
 if(NOT BRICK_SANITIZE AND NOT BRICK_COVERAGE)  # a user's program knows nothing of their flags
-  add_test(NAME package.examples
+  add_test(NAME package.programs  # an example by each pkg-config file
+    COMMAND Python3::Interpreter tools/check_package.py --build ${CMAKE_BINARY_DIR} --compiler ${CMAKE_CXX_COMPILER}
+            --programs WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+  add_test(NAME package.examples CONFIGURATIONS night  # all
     COMMAND Python3::Interpreter tools/check_package.py --build ${CMAKE_BINARY_DIR} --compiler ${CMAKE_CXX_COMPILER}
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-  set_tests_properties(package.examples PROPERTIES TIMEOUT 400 LABELS unit SKIP_RETURN_CODE 77)
+  set_tests_properties(package.programs package.examples PROPERTIES TIMEOUT 400 LABELS unit SKIP_RETURN_CODE 77)
 endif()

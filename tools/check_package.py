@@ -6,7 +6,8 @@ each of the pkg-config files. Each example's tests have to run, none may be skip
 wrong is that a tool of an example is not installed), and the waveform that one of them writes is looked at. Of the
 installed pages no link leads to nothing, and each is a file of the tree, byte for byte. Nothing that is installed may
 name this tree or its build folder, but the image, whose sources a debugger looks for.
-check_package.py --build DIR, or --prefix DIR [--examples DIR] for what is installed already.
+check_package.py --build DIR [--programs], or --prefix DIR [--examples DIR] for what is installed already. --programs:
+of the examples the program of each pkg-config file alone.
 """
 
 import argparse
@@ -141,13 +142,14 @@ def pkg_config(package, prefix, work, compiler):
     return ""
 
 
-def check(prefix, places, compiler, wanted):
+def check(prefix, places, compiler, wanted, programs):
     with tempfile.TemporaryDirectory() as name:
         work = pathlib.Path(name)
         (work / "empty").mkdir()
-        problems = [*points_back(prefix, places), *dead_links(prefix),
-                    examples(prefix, work / "empty", compiler, wanted)]
-        if "servo_ic" in wanted:
+        problems = [*points_back(prefix, places), *dead_links(prefix)]
+        if not programs:
+            problems.append(examples(prefix, work / "empty", compiler, wanted))
+        if "servo_ic" in wanted and not programs:
             problems.append(waveform(work / "empty/servo_ic/servo_ic.vcd"))
         problems += [pkg_config(package, prefix, work, compiler) for package in PROGRAMS]
     return list(filter(None, problems))
@@ -159,6 +161,7 @@ def main():
     what.add_argument("--build", type=pathlib.Path)
     what.add_argument("--prefix", type=pathlib.Path)
     parser.add_argument("--examples", type=pathlib.Path, help="folders that have to be installed, default none")
+    parser.add_argument("--programs", action="store_true")
     parser.add_argument("--compiler", default="c++")
     options = parser.parse_args()
     source = ROOT / "examples" if options.build else options.examples
@@ -171,8 +174,8 @@ def main():
             if not good:
                 finish("package", [text])
         problems = [*(other_pages(prefix) if options.build else []),
-                    *check(prefix, places, options.compiler, wanted)]
-    missing = {name: tools for name, tools in without_tools().items() if name in wanted}
+                    *check(prefix, places, options.compiler, wanted, options.programs)]
+    missing = {name: tools for name, tools in without_tools().items() if name in wanted and not options.programs}
     if missing and not problems:
         skip("; ".join(f"{name} needs {', '.join(tools)}" for name, tools in missing.items()))
     finish("package", problems)

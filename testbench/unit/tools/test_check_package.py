@@ -85,6 +85,7 @@ class Package(Tree):
     def test_a_missing_header_fails(self):
         (self.root / "include/brick/answer.h").unlink()
         self.check(1, "brick/answer.h: No such file", "package: 3 problem(s)")
+        self.check(1, "brick/answer.h: No such file", "package: 2 problem(s)", options=["--programs"])
 
     def test_a_missing_function_fails(self):
         self.write("answer.cpp", "")
