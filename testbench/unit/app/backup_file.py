@@ -3,6 +3,7 @@
 Variables of every group with values of their ranges (firmware:2, firmware:3), P, Q, M definitions of every form
 (firmware:1.8), axis definitions (firmware:7.4) and PLC programs of every statement that they may hold (firmware:7.2).
 Everything in it a real controller takes. usage: backup_file.py FOLDER; FOLDER/backup.pmc includes the other files.
+With `each` every third variable or PLC is in it, or so: every form of them still.
 """
 import itertools
 import pathlib
@@ -53,17 +54,17 @@ def text_of(value):
     return f"{value:.10f}".rstrip("0").rstrip(".") if isinstance(value, float) else str(value)
 
 
-def p_values():
-    return dict(zip(range(8192), numbers(1), strict=False))
+def p_values(each):
+    return dict(itertools.islice(zip(range(8192), numbers(1), strict=False), 0, None, each))
 
 
-def pq_variables():
-    for n, value in p_values().items():
+def pq_variables(each):
+    for n, value in p_values(each).items():
         yield f"P{n}={text_of(value)}"
     for cs in range(1, 17):
         values = numbers(1 + cs)
         yield f"&{cs}"
-        for n in range(200):
+        for n in range(0, 200, each):
             yield f"Q{n}={text_of(next(values))}"
 
 
@@ -118,30 +119,30 @@ def plc(number):
     yield "CLOSE"
 
 
-def lines():
-    """(file, kind, line) of the whole backup, in the order in which they are sent."""
+def lines(each):
+    """(file, kind, line) of the backup, in the order in which they are sent."""
     yield "backup.pmc", "buffers", "CLOSE"
     yield "backup.pmc", "buffers", "DELETE GATHER"
-    for line in i_variables():
+    for line in itertools.islice(i_variables(), 0, None, each):
         yield "variables.pmc", "I variable", line
-    for line in pq_variables():
+    for line in pq_variables(each):
         yield "variables.pmc", "P or Q variable", line
-    for kind, line in m_definitions():
+    for kind, line in itertools.islice(m_definitions(), 0, None, each):
         yield "variables.pmc", kind, line
     for line in axis_definitions():
         yield "axes.pmc", "axis definition", line
-    for number in range(1, PLCS + 1):
+    for number in range(1, PLCS + 1, each):
         for line in plc(number):
             yield "plcs.pmc", "PLC", line
 
 
-def write(folder):
+def write(folder, each=1):
     """Writes the files; returns `file:line` -> (kind, line)."""
     files = {name: [f"; {name}, made by the data sheet", "/* what is read out of a controller",
                     "   has comments like these */"]
              for name in ("backup.pmc", "variables.pmc", "axes.pmc", "plcs.pmc")}
     places = {}
-    for file, kind, line in lines():
+    for file, kind, line in lines(each):
         if file != "backup.pmc":
             include = f'#include "{file}" ; in its turn'
             if include not in files["backup.pmc"]:

@@ -110,14 +110,19 @@ FACTORY = {"gate ICs AA1": [8, 10, 16, 24, 31], "default area": [15, 15, 31, 31,
 
 
 def sweep():
-    """Every clock and region has its least number, not above host-bus:2.5, and the same on RTL."""
-    model, rtl = sweep_of(), sweep_of("--engine", "rtl")
-    check(len(model) == 96 and model == rtl, str([key for key in model if model[key] != rtl[key]]))
+    """Every clock and region has its least number, not above host-bus:2.5."""
+    model = sweep_of()
+    check(len(model) == 96, str(model))
     for (i52, region), cell in model.items():
         row = 0 if i52 <= 7 else 1 if i52 <= 9 else 2 if i52 <= 15 else 3 if i52 <= 23 else 4
         most = 4 if region.startswith("dual") and i52 < 5 else FACTORY[region][row]
         check(cell["least"] is not None and cell["least"] <= most, str(cell))
         check((cell["least"] == 1) == (cell["below"] == "-") and "lost" not in cell["below"].split(",")[0], str(cell))
+
+
+def sweep_rtl():
+    model, rtl = sweep_of(), sweep_of("--engine", "rtl")
+    check(len(model) == 96 and model == rtl, str([key for key in model if model[key] != rtl[key]]))
 
 
 FIELDS = {"gate ICs AA1": (5, 31), "dual-ported RAM AA2": (10, 7), "default area": (16, 31)}
