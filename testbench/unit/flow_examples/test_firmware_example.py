@@ -18,6 +18,8 @@ class FirmwareChange(Installed):
     def run_example(self):
         example = self.data / "examples/firmware"
         where = {"BUILD": str(self.prefix / "image"), "BRICK": f"{self.build}/bin/brick"}
+        if shutil.which("ccache") is not None:  # the same sources are compiled twice
+            where |= {"MAKEFLAGS": r"CC=ccache\ riscv64-unknown-elf-gcc", "CCACHE_DIR": str(self.prefix / "ccache")}
         return subprocess.run([example / "run.sh"], timeout=250, text=True, env={**os.environ, **where},
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
