@@ -2,6 +2,7 @@
 # label `unit`. SANITIZED: under the address and undefined-behaviour sanitizers in every build, whatever the preset.
 # QUICK: its tests take little time, so the compiler shall take little too: not optimised.
 # TOGETHER [ALONE a.cpp ...]: brick_together(), names that are local to a file differ in all the others.
+# ENVIRONMENT A=1 ...: of the tests in ctest.
 # NIGHT Suite.Name/Lockstep ...: patterns of tests that only `ctest -C night` runs, an entry each of that name.
 # brick_sanitize(TARGET): the same for a library; what links it is sanitized too.
 # brick_test_code(TARGET [SANITIZED | QUICK]): how code that only tests use is compiled. It is most of the compiler's
@@ -58,7 +59,8 @@ function(brick_test_code target)
 endfunction()
 
 function(brick_add_test)
-  cmake_parse_arguments(T "SANITIZED;QUICK;TOGETHER" "NAME;TIMEOUT" "SOURCES;LIBRARIES;ALONE;NIGHT" ${ARGN})
+  cmake_parse_arguments(T "SANITIZED;QUICK;TOGETHER" "NAME;TIMEOUT" "SOURCES;LIBRARIES;ALONE;ENVIRONMENT;NIGHT"
+                        ${ARGN})
   if(NOT T_TIMEOUT)
     set(T_TIMEOUT 300)
     if(BRICK_COVERAGE)
@@ -83,7 +85,7 @@ function(brick_add_test)
     set(by_day TEST_FILTER "-${at_night}")
   endif()
   gtest_discover_tests(${T_NAME} ${by_day} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${T_TIMEOUT} LABELS unit
-                       WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+                       ENVIRONMENT "${T_ENVIRONMENT}" WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
   math(EXPR longer "4 * ${T_TIMEOUT}")
   foreach(pattern ${T_NIGHT})
     add_test(NAME ${pattern} CONFIGURATIONS night COMMAND ${T_NAME} --gtest_filter=${pattern}
