@@ -56,7 +56,7 @@ what has no native build. Which tests judge a module says `tools/mutate/modules.
 options.
 
 `./dev mutate again` builds twenty killed mutants once more, and each must die again: of one module, which is drawn from
-RTL and firmware, or of each that is named, of any kind. The test `mutation.killed_again` draws.
+RTL and firmware, or of each that is named, of any kind. The test `mutation.killed_again` draws ten.
 """
 
 
