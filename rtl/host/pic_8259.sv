@@ -213,7 +213,12 @@ module pic_8259 (
   assign imr_o   = imr_q;
   assign level_o = level_q;
 
-  assign request_o = pending;
+  // INT is made of what the registers are after the coming edge: what a write masks or ends asks no more. A line goes
+  // a clock later.
+  logic [7:0] asks, holds;
+  assign asks      = line2_q & (armed_d | {8{level_d}}) & ~imr_d;
+  assign holds     = isr_d & ~(imr_d & {8{special_d}});
+  assign request_o = (step_d == StepReady) & (rank(asks, lowest_d) < rank(holds, lowest_d));
   assign served_o  = ack;
 
 endmodule : pic_8259

@@ -9,7 +9,7 @@ static_assert(((words::kOcw2.address ^ words::kIcw1.address) & 3) == 0 &&
 static_assert(((words::kIcw2.address ^ words::kOcw1.address) & 3) == 0 &&
               ((words::kIcw4.address ^ words::kOcw1.address) & 3) == 0);
 
-unsigned Pic8259::rank(std::uint8_t bits) const {
+unsigned Pic8259::Registers::rank(std::uint8_t bits) const {
   for (unsigned r = 0; r < 8; ++r)
     if ((bits >> level_of(r) & 1) != 0) return r;
   return 8;
@@ -17,99 +17,101 @@ unsigned Pic8259::rank(std::uint8_t bits) const {
 
 std::uint8_t Pic8259::rdata() const {
   if (in.addr > kAcknowledge) return 0xFF;
-  const unsigned acked = acknowledged();
+  const Registers& r = registers_;
+  const unsigned acked = r.acknowledged(line2_);
   if (in.addr == kAcknowledge)
-    return static_cast<std::uint8_t>(words::vector::kBase.at(vector_) | words::vector::kIr.at(acked));
-  if (poll_) return static_cast<std::uint8_t>(words::poll::kPending.at(pending()) | words::poll::kIr.at(acked));
-  return in.addr == kMask ? imr_ : read_isr_ ? isr_ : irr();
+    return static_cast<std::uint8_t>(words::vector::kBase.at(r.vector) | words::vector::kIr.at(acked));
+  if (r.poll) return static_cast<std::uint8_t>(words::poll::kPending.at(pending()) | words::poll::kIr.at(acked));
+  return in.addr == kMask ? r.imr : r.read_isr ? r.isr : irr();
 }
 
 bool Pic8259::idle() const {
   return !in.rd && !in.wr && in.line == line1_ && line1_ == line2_ &&
-         (armed_ | static_cast<std::uint8_t>(~line2_)) == armed_;
+         (registers_.armed | static_cast<std::uint8_t>(~line2_)) == registers_.armed;
+}
+
+Pic8259::Registers Pic8259::coming() const {
+  Registers next = registers_;
+  if (served()) next.acknowledge(registers_.acknowledged(line2_));
+  if (reads_poll()) next.poll = false;
+  if (in.wr && in.addr == kCommand) next.write_command(in.wdata);
+  if (in.wr && in.addr == kMask) next.write_second(in.wdata);
+  next.armed |= static_cast<std::uint8_t>(~line2_);  // a line that is low now arms its next edge, whatever clears it
+  return next;
 }
 
 void Pic8259::step() {
-  const std::uint8_t low = ~line2_;
-  if (served()) acknowledge();
-  if (reads_poll()) poll_ = false;
-  if (in.wr && in.addr == kCommand) write_command();
-  if (in.wr && in.addr == kMask) write_second();
-  armed_ |= low;  // a line that is low now arms its next edge, whatever clears it
+  registers_ = coming();
   line2_ = line1_;
   line1_ = in.line;
 }
 
-void Pic8259::acknowledge() {
-  const unsigned acked = acknowledged();
+void Pic8259::Registers::acknowledge(unsigned acked) {
   const auto bit = static_cast<std::uint8_t>(1u << acked);
-  armed_ &= ~bit;
-  if (!aeoi_)
-    isr_ |= bit;
-  else if (turn_)
-    lowest_ = acked;
+  armed &= ~bit;
+  if (!aeoi)
+    isr |= bit;
+  else if (turn)
+    lowest = acked;
 }
 
-void Pic8259::write_command() {
+void Pic8259::Registers::write_command(std::uint8_t byte) {
   using namespace words::ocw3;
-  if (words::icw1::kIcw1.is_set(in.wdata)) return write_icw1();
-  if (!kOcw3.is_set(in.wdata)) return write_ocw2();
-  if (kEsmm.is_set(in.wdata)) special_ = kSmm.is_set(in.wdata);
-  if (kRr.is_set(in.wdata)) read_isr_ = kRis.is_set(in.wdata);
-  poll_ = kPoll.is_set(in.wdata);
+  if (words::icw1::kIcw1.is_set(byte)) return write_icw1(byte);
+  if (!kOcw3.is_set(byte)) return write_ocw2(byte);
+  if (kEsmm.is_set(byte)) special = kSmm.is_set(byte);
+  if (kRr.is_set(byte)) read_isr = kRis.is_set(byte);
+  poll = kPoll.is_set(byte);
 }
 
-void Pic8259::write_icw1() {
-  level_ = words::icw1::kLtim.is_set(in.wdata);
-  icw3_ = !words::icw1::kSngl.is_set(in.wdata);
-  icw4_ = words::icw1::kIc4.is_set(in.wdata);
-  armed_ = isr_ = imr_ = 0;
-  lowest_ = kDefaultLevel;
-  turn_ = aeoi_ = special_ = read_isr_ = poll_ = false;
-  step_ = Step::kIcw2;
+void Pic8259::Registers::write_icw1(std::uint8_t byte) {
+  level = words::icw1::kLtim.is_set(byte);
+  icw3 = !words::icw1::kSngl.is_set(byte);
+  icw4 = words::icw1::kIc4.is_set(byte);
+  armed = isr = imr = 0;
+  lowest = kDefaultLevel;
+  turn = aeoi = special = read_isr = poll = false;
+  step = Step::kIcw2;
 }
 
-void Pic8259::write_ocw2() {
+void Pic8259::Registers::write_ocw2(std::uint8_t byte) {
   using namespace words::ocw2;
-  const bool turn = kRotate.is_set(in.wdata), specific = kSl.is_set(in.wdata), end = kEoi.is_set(in.wdata);
+  const bool rotates = kRotate.is_set(byte), specific = kSl.is_set(byte), end = kEoi.is_set(byte);
   const unsigned highest = rank(serviced());
-  const unsigned level = specific ? kIr.get(in.wdata) : level_of(highest);
+  const unsigned named = specific ? kIr.get(byte) : level_of(highest);
   if (end) {
     if (!specific && highest == 8) return;
-    isr_ &= static_cast<std::uint8_t>(~(1u << level));
-    if (turn) lowest_ = level;
+    isr &= static_cast<std::uint8_t>(~(1u << named));
+    if (rotates) lowest = named;
   } else if (!specific) {
-    turn_ = turn;
-  } else if (turn) {
-    lowest_ = level;
+    turn = rotates;
+  } else if (rotates) {
+    lowest = named;
   }
 }
 
-void Pic8259::write_second() {
-  switch (step_) {
+void Pic8259::Registers::write_second(std::uint8_t byte) {
+  switch (step) {
     case Step::kReady:
-      imr_ = in.wdata;
+      imr = byte;
       break;
     case Step::kIcw2:
-      vector_ = static_cast<std::uint8_t>(words::icw2::kVector.get(in.wdata));
-      step_ = icw3_ ? Step::kIcw3 : icw4_ ? Step::kIcw4 : Step::kReady;
+      vector = static_cast<std::uint8_t>(words::icw2::kVector.get(byte));
+      step = icw3 ? Step::kIcw3 : icw4 ? Step::kIcw4 : Step::kReady;
       break;
     case Step::kIcw3:
-      step_ = icw4_ ? Step::kIcw4 : Step::kReady;
+      step = icw4 ? Step::kIcw4 : Step::kReady;
       break;
     case Step::kIcw4:
-      aeoi_ = words::icw4::kAeoi.is_set(in.wdata);
-      step_ = Step::kReady;
+      aeoi = words::icw4::kAeoi.is_set(byte);
+      step = Step::kReady;
       break;
   }
 }
 
 void Pic8259::reset_registers() {
-  line1_ = line2_ = armed_ = isr_ = vector_ = 0;
-  imr_ = words::kOcw1.reset;
-  lowest_ = kDefaultLevel;
-  step_ = Step::kReady;
-  icw3_ = icw4_ = level_ = aeoi_ = turn_ = special_ = read_isr_ = poll_ = false;
+  line1_ = line2_ = 0;
+  registers_ = Registers();
 }
 
 }  // namespace brick

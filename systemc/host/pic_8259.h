@@ -19,11 +19,11 @@ class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
   Inputs in;
 
   std::uint8_t rdata() const;
-  std::uint8_t irr() const { return line2_ & (level_ ? 0xFF : armed_); }
-  std::uint8_t isr() const { return isr_; }
-  std::uint8_t imr() const { return imr_; }
-  bool level() const { return level_; }
-  bool request() const { return pending(); }
+  std::uint8_t irr() const { return registers_.irr(line2_); }
+  std::uint8_t isr() const { return registers_.isr; }
+  std::uint8_t imr() const { return registers_.imr; }
+  bool level() const { return registers_.level; }
+  bool request() const { return coming().pending(line2_); }  // after the coming edge, a line that falls a clock later
   bool served() const { return pending() && (reads_poll() || (in.rd && in.addr == kAcknowledge)); }
 
  private:
@@ -36,31 +36,41 @@ class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
   static constexpr unsigned kDefaultLevel = regs::pic_8259::poll::kIr.get(
       regs::pic_8259::kPoll.reset);  // of a request that has gone, and the lowest after ICW1
 
+  struct Registers {
+    std::uint8_t armed = 0;  // the line has been low since its last acknowledge
+    std::uint8_t isr = 0, imr = regs::pic_8259::kOcw1.reset, vector = 0;
+    unsigned lowest = kDefaultLevel;
+    Step step = Step::kReady;
+    bool icw3 = false, icw4 = false;  // will be written
+    bool level = false, aeoi = false, turn = false, special = false, read_isr = false, poll = false;
+
+    std::uint8_t irr(std::uint8_t line) const { return line & (level ? 0xFF : armed); }
+    // Levels in the order of priority: 0 is the one above the lowest, 8 none of `bits`.
+    unsigned rank(std::uint8_t bits) const;
+    unsigned level_of(unsigned rank) const { return (rank + lowest + 1) & 7; }
+    std::uint8_t serviced() const { return isr & ~(special ? imr : 0); }  // levels that hold off others
+    bool pending(std::uint8_t line) const { return step == Step::kReady && rank(irr(line) & ~imr) < rank(serviced()); }
+    unsigned acknowledged(std::uint8_t line) const {
+      return pending(line) ? level_of(rank(irr(line) & ~imr)) : kDefaultLevel;
+    }
+
+    void acknowledge(unsigned acked);
+    void write_command(std::uint8_t byte);
+    void write_icw1(std::uint8_t byte);
+    void write_ocw2(std::uint8_t byte);
+    void write_second(std::uint8_t byte);
+  };
+
   bool idle() const override;
   void step() override;
   void reset_registers() override;
 
-  // Levels in the order of priority: 0 is the one above the lowest, 8 none of `bits`.
-  unsigned rank(std::uint8_t bits) const;
-  unsigned level_of(unsigned rank) const { return (rank + lowest_ + 1) & 7; }
-  std::uint8_t serviced() const { return isr_ & ~(special_ ? imr_ : 0); }  // levels that hold off others
-  bool pending() const { return step_ == Step::kReady && rank(irr() & ~imr_) < rank(serviced()); }
-  unsigned acknowledged() const { return pending() ? level_of(rank(irr() & ~imr_)) : kDefaultLevel; }
-  bool reads_poll() const { return in.rd && poll_ && in.addr <= kMask; }
-
-  void acknowledge();
-  void write_command();
-  void write_icw1();
-  void write_ocw2();
-  void write_second();
+  bool pending() const { return registers_.pending(line2_); }
+  bool reads_poll() const { return in.rd && registers_.poll && in.addr <= kMask; }
+  Registers coming() const;  // after the coming edge
 
   std::uint8_t line1_, line2_;
-  std::uint8_t armed_;  // the line has been low since its last acknowledge
-  std::uint8_t isr_, imr_, vector_;
-  unsigned lowest_;
-  Step step_;
-  bool icw3_, icw4_;  // will be written
-  bool level_, aeoi_, turn_, special_, read_isr_, poll_;
+  Registers registers_;
 };
 
 }  // namespace brick

@@ -23,6 +23,9 @@
 // fault R8: an automatic end leaves its level in service (rtl/host/pic_8259.sv)
 //   - if (!aeoi_q) isr_d
 //   + if (1'b1) isr_d
+// fault R9: INT is asked for by what the registers were before the edge (rtl/host/pic_8259.sv)
+//   - assign request_o = (step_d == StepReady) & (rank(asks, lowest_d) < rank(holds, lowest_d));
+//   + assign request_o = pending;
 `default_nettype none
 
 module pic_8259_rules (
@@ -44,6 +47,8 @@ module pic_8259_rules (
   (* hierconn *) wire logic       \dut.special_q ;
   (* hierconn *) wire logic       \dut.aeoi_q ;
   (* hierconn *) wire logic       \dut.poll_q ;
+  (* hierconn *) wire logic       \dut.pending ;
+  (* hierconn *) wire logic [1:0] \dut.step_q ;
 
   (* anyconst *) logic [2:0] n;
   logic [2:0] acked, rank_acked, rank_n;
@@ -58,10 +63,10 @@ module pic_8259_rules (
   assign holds       = isr[n] & ~(\dut.special_q & imr[n]);  // n holds off others
 
   // What an observer of the pins remembers. `pin_q[k]` is line n k + 1 clocks ago.
-  logic       started_q = 1'b0, once_q, above;
+  logic       started_q = 1'b0, once_q, above, above_n;
   logic [1:0] pin_q;
   logic [2:0] lowest_q;
-  logic [7:0] isr_q;
+  logic [7:0] isr_q, asking;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       once_q <= 1'b0;
@@ -81,6 +86,18 @@ module pic_8259_rules (
     end
   end
 
+  // What asked for INT at the last edge: a line that fell at it still did. Whether one of them is above n.
+  logic [7:0] irr_q;
+  logic       request_q;
+  always_ff @(posedge clk_i) {irr_q, request_q} <= {irr, request};
+  assign asking = irr_q & ~imr;
+  always_comb begin
+    above_n = 1'b0;
+    for (int unsigned k = 0; k < 8; k++) begin
+      if (asking[k] && (k[2:0] - \dut.lowest_q - 3'd1) < rank_n) above_n = 1'b1;
+    end
+  end
+
   always @(posedge clk_i) begin
     started_q <= 1'b1;
     // guarantee: power-on
@@ -88,10 +105,10 @@ module pic_8259_rules (
     // guarantee: isa_slave R4
     assume (!rd_i || !wr_i);
     if (started_q && rst_ni && $past(rst_ni)) begin
-      // R1: INT is asked for only by a level that asks and is not masked, and such a one is acknowledged.
-      if (request) begin
-        R1: assert ((irr & ~imr) != 8'h00 && (!served || (irr[acked] && !imr[acked])));
-        C1: cover (served && (irr & imr) != 8'h00);
+      // R1: What is acknowledged asks and is not masked.
+      if (served) begin
+        R1: assert (irr[acked] && !imr[acked]);
+        C1: cover ((irr & imr) != 8'h00);
       end
 
       // R2: What is acknowledged is above every level that holds off others.
@@ -113,7 +130,7 @@ module pic_8259_rules (
       end
 
       // R5: An acknowledge without a request gives IR7 and changes nothing in service.
-      if ($past(acknowledge && !request)) begin
+      if ($past(acknowledge && !\dut.pending )) begin
         R5: assert ($past(rdata[2:0]) == 3'd7 && isr == $past(isr));
         C5: cover ($past(imr) != 8'hFF);
       end
@@ -133,6 +150,13 @@ module pic_8259_rules (
       if ($past(served && \dut.aeoi_q )) begin
         R8: assert ((isr & ~$past(isr)) == 8'h00);
         C8: cover ($past(irr) != irr);
+      end
+
+      // R9: INT is asked for only by a level that after the edge is not masked, and then is above every level in
+      // service, and not in the initialization.
+      if (request_q) begin
+        R9: assert (asking != 8'h00 && (!holds || above_n) && \dut.step_q == 2'd0);
+        C9: cover (holds && $past(wr_i));
       end
     end
   end

@@ -248,6 +248,54 @@ TEST_F(Pic8259Clocks, EdgeRaisesTheInterruptAtTheThirdClock) {
   EXPECT_LOCKSTEP(both);
 }
 
+// INT is made of what the registers are after the edge: a request that meets the write that masks it, or the ICW1 that
+// ends it, raises no edge that a PC would sense.
+TEST_F(Pic8259Clocks, RequestThatMeetsItsMaskRaisesNothing) {
+  for (const bool icw1 : {false, true})
+    for (int lead = 0; lead <= 5; ++lead) {  // clocks from the line's rise to the write; it asks at the third
+      SCOPED_TRACE(::testing::Message() << (icw1 ? "ICW1 " : "OCW1 ") << lead << " clocks after the rise");
+      initialize();
+      line(1, true);
+      for (int clock = 0; clock < 8; ++clock) {
+        both.in.wr = clock == lead;
+        both.in.addr = icw1 ? kCommand : kMask;
+        both.in.wdata = icw1 ? 0x13 : 0xFF;
+        EXPECT_EQ(both.get("request"), clock >= 2 && clock < lead ? 1u : 0u) << "clock " << clock;
+        both.ref();
+      }
+      both.in.wr = false;
+      EXPECT_LOCKSTEP(both);
+    }
+}
+
+// A level in service that holds the request off from that clock on: special mask mode ends, or the request becomes the
+// lowest. And one that lets it through: INT is asked for at the same clock.
+TEST_F(Pic8259Clocks, RequestFollowsAWriteAtItsClock) {
+  struct {
+    unsigned before, value, follows;  // commands of +8 before IR6 comes, and then: 1 INT is asked for
+  } constexpr kWrites[] = {{0x68, 0x48, 0}, {0xC5, 0xC6, 0}, {0x48, 0x68, 1}, {0xC6, 0xC5, 1}, {0x48, 0x62, 1}};
+  for (const auto& w : kWrites) {
+    SCOPED_TRACE(::testing::Message() << std::hex << w.before << " " << w.value);
+    initialize();
+    line(2, true);
+    settle();
+    EXPECT_EQ(read(kAcknowledge), 0x0Au);
+    write(kMask, 0x04);
+    write(kCommand, w.before);
+    line(6, true);
+    settle();
+    EXPECT_EQ(both.get("request"), 1 - w.follows);
+    both.in.wr = true;
+    both.in.addr = kCommand;
+    both.in.wdata = static_cast<std::uint8_t>(w.value);
+    EXPECT_EQ(both.get("request"), w.follows);
+    both.ref();
+    both.in.wr = false;
+    EXPECT_EQ(both.get("request"), w.follows);
+    EXPECT_LOCKSTEP(both);
+  }
+}
+
 // systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
 TEST_F(Pic8259Clocks, SleepsWhileNothingMoves) {
   initialize();
