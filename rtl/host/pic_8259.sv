@@ -154,7 +154,8 @@ module pic_8259 (
     end
   end
 
-  sync2 #(.Width(8)) u_line_sync (.clk_i(clk_ref_i), .rst_ni, .d_i(line_i), .q_o(line2_q));
+  // Reset as if all lines were high: none is armed before it has been seen low.
+  sync2 #(.Width(8), .Reset(8'hFF)) u_line_sync (.clk_i(clk_ref_i), .rst_ni, .d_i(line_i), .q_o(line2_q));
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin

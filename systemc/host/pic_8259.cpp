@@ -110,7 +110,7 @@ void Pic8259::Registers::write_second(std::uint8_t byte) {
 }
 
 void Pic8259::reset_registers() {
-  line1_ = line2_ = 0;
+  line1_ = line2_ = 0xFF;  // none is armed before it has been seen low
   registers_ = Registers();
 }
 

@@ -26,6 +26,9 @@
 // fault R9: INT is asked for by what the registers were before the edge (rtl/host/pic_8259.sv)
 //   - assign request_o = (step_d == StepReady) & (rank(asks, lowest_d) < rank(holds, lowest_d));
 //   + assign request_o = pending;
+// fault R10: a line that is high at the reset has an edge (rtl/host/pic_8259.sv)
+//   - sync2 #(.Width(8), .Reset(8'hFF)) u_line_sync
+//   + sync2 #(.Width(8)) u_line_sync
 `default_nettype none
 
 module pic_8259_rules (
@@ -63,16 +66,18 @@ module pic_8259_rules (
   assign holds       = isr[n] & ~(\dut.special_q & imr[n]);  // n holds off others
 
   // What an observer of the pins remembers. `pin_q[k]` is line n k + 1 clocks ago.
-  logic       started_q = 1'b0, once_q, above, above_n;
+  logic       started_q = 1'b0, once_q, low_q, above, above_n;
   logic [1:0] pin_q;
   logic [2:0] lowest_q;
   logic [7:0] isr_q, asking;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       once_q <= 1'b0;
+      low_q  <= 1'b0;
       pin_q  <= 2'b00;
     end else begin
       once_q <= ((once_q & ~icw1) | (served & (acked == n))) & pin_q[1];
+      low_q  <= low_q | ~line_i[n];
       pin_q  <= {pin_q[0], line_i[n]};
     end
   end
@@ -157,6 +162,12 @@ module pic_8259_rules (
       if (request_q) begin
         R9: assert (asking != 8'h00 && (!holds || above_n) && \dut.step_q == 2'd0);
         C9: cover (holds && $past(wr_i));
+      end
+
+      // R10: By edge no line asks that has not been low since the reset.
+      if (!low_q && !level) begin
+        R10: assert (!irr[n]);
+        C10: cover (pin_q == 2'b11 && !imr[n]);
       end
     end
   end

@@ -216,6 +216,7 @@ TEST_F(Pic8259Random, AgreesWithASecondDescription) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     both.in = {};
     both.reset();
+    settle();  // all lines have been low
     EXPECT_EQ(talk(seed, false), "") << "seed " << seed;
   }
   EXPECT_GE(acknowledged_, 6 * kOperations / 8);
@@ -292,6 +293,28 @@ TEST_F(Pic8259Clocks, RequestFollowsAWriteAtItsClock) {
     both.ref();
     both.in.wr = false;
     EXPECT_EQ(both.get("request"), w.follows);
+    EXPECT_LOCKSTEP(both);
+  }
+}
+
+// host-bus:4.5/4, host-bus:4.5/9: a line that was high before the reset and since has had no edge.
+TEST_F(Pic8259Clocks, LineThatIsHighAtAResetHasNoEdgeBeforeItHasBeenLow) {
+  for (int low = 0; low <= 2; ++low) {
+    SCOPED_TRACE(::testing::Message() << "low for " << low);
+    both.in = {};
+    line(3, true);
+    both.ref(6);
+    both.reset();
+    settle();
+    write(kMask, 0x00);
+    EXPECT_EQ(both.get("irr"), 0u);
+    EXPECT_EQ(both.get("request"), 0u);
+    line(3, low == 0);
+    if (low > 0) both.ref(low);
+    line(3, true);
+    settle();
+    EXPECT_EQ(both.get("irr"), low > 0 ? 0x08u : 0u);
+    EXPECT_EQ(both.get("request"), low > 0 ? 1u : 0u);
     EXPECT_LOCKSTEP(both);
   }
 }
