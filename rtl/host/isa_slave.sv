@@ -170,7 +170,7 @@ module isa_slave (
   logic [14:0] mem_addr_q;
   logic [3:0]  io_addr_q;
   logic        byte8_q;
-  logic        start, ends, spoilt, io_load, mem_load;
+  logic        start, ends, spoilt, io_load, mem_load, takes_effect;
   logic [7:0]  io_rdata;
   logic [15:0] sd_q, wdata_q;     // read data; write data, for who works on clk_ref
 
@@ -181,6 +181,8 @@ module isa_slave (
   assign spoilt   = active & ((cmd2_q & ~kind_q) != 4'h0);  // a second command
   assign io_load  = (cycle_q == Start) & kind_q[Ior] & (target_q[Port] | target_q[Pic] | target_q[Other]);
   assign mem_load = (cycle_q == Fetch) & ~mem_busy_i;
+  // RESETDRV that is seen at the end of a cycle or a clock after it makes it void (host-bus:3.8/3).
+  assign takes_effect = finish & ~resetdrv;
 
   always_comb begin
     cycle_d = cycle_q;
@@ -259,21 +261,21 @@ module isa_slave (
   // ---------------------------------------------------------------- towards the blocks
   assign hp_sel_o     = target_q[Port];
   assign hp_rd_o      = target_q[Port] & (cycle_q == Start) & kind_q[Ior];
-  assign hp_rd_done_o = target_q[Port] & (cycle_q == DoneShown);
-  assign hp_wr_o      = target_q[Port] & finish & kind_q[Iow];
+  assign hp_rd_done_o = target_q[Port] & (cycle_q == DoneShown) & takes_effect;
+  assign hp_wr_o      = target_q[Port] & takes_effect & kind_q[Iow];
   assign hp_addr_o    = io_addr_q[2:0];
   assign hp_wdata_o   = wdata_q[7:0];
 
   assign pic_sel_o     = target_q[Pic];
   assign pic_rd_o      = target_q[Pic] & (cycle_q == Start) & kind_q[Ior] &
-                         (cmd2_q == kind_q);  // command still there, alone
-  assign pic_wr_o      = target_q[Pic] & finish & kind_q[Iow];
+                         (cmd2_q == kind_q) & ~resetdrv;  // command still there, alone
+  assign pic_wr_o      = target_q[Pic] & takes_effect & kind_q[Iow];
   assign pic_addr_o    = io_addr_q[1:0];
   assign pic_wdata_o   = wdata_q[7:0];
 
   assign mem_sel_o   = target_q[Memory] & active;
   assign mem_rd_o    = kind_q[Memr];
-  assign mem_wr_o    = target_q[Memory] & finish & kind_q[Memw];
+  assign mem_wr_o    = target_q[Memory] & takes_effect & kind_q[Memw];
   assign mem_addr_o  = mem_addr_q;
   assign mem_be_o    = be_q;
   assign mem_wdata_o = byte8_q ? {wdata_q[7:0], wdata_q[7:0]} : wdata_q;

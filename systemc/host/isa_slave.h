@@ -32,20 +32,22 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   // Host port
   bool hp_sel() const { return target_ & kPort; }
   bool hp_rd() const { return hp_sel() && cycle_ == Cycle::kStart && (kind_ & kIor); }
-  bool hp_rd_done() const { return hp_sel() && cycle_ == Cycle::kDoneShown; }
-  bool hp_wr() const { return hp_sel() && finished() && (kind_ & kIow); }
+  bool hp_rd_done() const { return hp_sel() && cycle_ == Cycle::kDoneShown && takes_effect(); }
+  bool hp_wr() const { return hp_sel() && takes_effect() && (kind_ & kIow); }
   std::uint8_t hp_addr() const { return io_addr_ & 7; }
   std::uint8_t hp_wdata() const { return wdata_ & 0xFF; }
   // Interrupt controller
   bool pic_sel() const { return target_ & kPic; }
-  bool pic_rd() const { return pic_sel() && cycle_ == Cycle::kStart && (kind_ & kIor) && cmd2_ == kind_; }
-  bool pic_wr() const { return pic_sel() && finished() && (kind_ & kIow); }
+  bool pic_rd() const {
+    return pic_sel() && cycle_ == Cycle::kStart && (kind_ & kIor) && cmd2_ == kind_ && !host_reset();
+  }
+  bool pic_wr() const { return pic_sel() && takes_effect() && (kind_ & kIow); }
   std::uint8_t pic_addr() const { return io_addr_ & 3; }
   std::uint8_t pic_wdata() const { return wdata_ & 0xFF; }
   // Dual-ported RAM
   bool mem_sel() const { return (target_ & kMemory) && active(); }
   bool mem_rd() const { return kind_ & kMemr; }
-  bool mem_wr() const { return (target_ & kMemory) && finished() && (kind_ & kMemw); }
+  bool mem_wr() const { return (target_ & kMemory) && takes_effect() && (kind_ & kMemw); }
   std::uint16_t mem_addr() const { return mem_addr_; }
   std::uint8_t mem_be() const { return be_; }
   std::uint16_t mem_wdata() const { return byte8_ ? static_cast<std::uint16_t>((wdata_ & 0xFF) * 0x101) : wdata_; }
@@ -75,6 +77,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   };
 
   bool finished() const { return cycle_ == Cycle::kDone || cycle_ == Cycle::kDoneShown; }
+  bool takes_effect() const { return finished() && !host_reset(); }
   bool active() const { return cycle_ != Cycle::kIdle && !finished(); }
   bool drives() const { return cycle_ == Cycle::kShow || cycle_ == Cycle::kShown; }
   bool fetched() const { return cycle_ == Cycle::kFetch && !in.mem_busy; }  // the coming edge takes the RAM's data

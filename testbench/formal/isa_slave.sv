@@ -1,6 +1,6 @@
 // Rules of the ISA slave towards the bus and towards what stands behind it, host-bus:3.4, host-bus:3.8, host-bus:3.9. A
 // step is half a period of clk_pwm, 4.2 ns; a pin may change at any, and an edge takes what stood a step before it. R1
-// to R5 and R7 hold for any pins. R6 is about hosts that have been sound so far: one command at a time, high for 24
+// to R5, R7 and R8 hold for any pins. R6 is about hosts that have been sound so far: one command at a time, high for 24
 // steps between two (host-bus:3.4, row 11: 170 ns) and low for 8 or more, write data standing from 5 steps after the
 // fall (row 6) to the rise, no RESETDRV. Switches stand. Of the data two bits are followed, one of each lane.
 // proof: pdr
@@ -21,6 +21,9 @@
 // fault R7: the byte of a read of +4 to +7 is not taken (rtl/host/isa_slave.sv)
 //   - assign hp_rd_o      = target_q[Port] & (cycle_q == Start) & kind_q[Ior];
 //   + assign hp_rd_o      = target_q[Port] & (cycle_q == Start) & kind_q[Ior] & ~io_addr_q[2];
+// fault R8: a write that has ended is made while RESETDRV is seen (rtl/host/isa_slave.sv)
+//   - assign takes_effect = finish & ~resetdrv;
+//   + assign takes_effect = finish;
 `default_nettype none
 
 module isa_slave_rules (
@@ -180,6 +183,12 @@ module isa_slave_rules (
     if (edge_ref && hp_rd_done) begin
       R7: assert (taken_q);
       C7: cover (hp_addr == 3'd7);
+    end
+
+    // R8: While RESETDRV is seen no cycle writes, ends a read of the port, or acknowledges.
+    if (edge_ref && host_reset) begin
+      R8: assert (!hp_wr && !hp_rd_done && !pic_wr && !pic_rd && !mem_wr);
+      C8: cover (pic_sel);
     end
   end
 

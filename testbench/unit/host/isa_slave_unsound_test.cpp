@@ -115,6 +115,71 @@ TEST_F(IsaSlaveTest, CommandThatWasLowAtAResetDoesNothing) {
   EXPECT_EQ(strobes.size(), 1u);
 }
 
+// RESETDRV that begins before a command ends makes its write void; one that begins 17 ns after it, or later, does not.
+TEST_F(IsaSlaveTest, ResetdrvBeforeTheEndOfAWriteLeavesItUnmade) {
+  for (const bool memory : {false, true}) {
+    const auto command = memory ? &Inputs::isa_memw_n : &Inputs::isa_iow_n;
+    for (int phase = 0; phase < 3; ++phase) {
+      for (int after = -12; after <= 12; ++after) {  // ticks from the command's end to RESETDRV
+        if (after == 0 || after == 1) continue;      // within the aperture of the two synchronisers
+        SCOPED_TRACE(::testing::Message() << memory << " phase " << phase << ", RESETDRV after " << after);
+        strobes.clear();
+        set_address(memory ? 0xD0000 : 0x21A);
+        both.in.isa_sd = 0x1234;
+        both.in.isa_sbhe_n = false;
+        ticks(11);
+        both.in.*command = false;
+        ticks(30);
+        at_phase(phase);
+        if (after < 0) {
+          both.in.isa_resetdrv = true;
+          ticks(-after);
+          both.in.*command = true;
+        } else {
+          both.in.*command = true;
+          ticks(after);
+          both.in.isa_resetdrv = true;
+        }
+        ticks(12);
+        both.in.isa_resetdrv = false;
+        ticks(20);
+        const auto written = memory ? Strobe{"mem_wr", 0, 0x31234} : Strobe{"pic_wr", 2, 0x34};
+        EXPECT_EQ(strobes, after < 0 ? std::vector<Strobe>{} : std::vector<Strobe>{written});
+      }
+    }
+  }
+}
+
+// A read acknowledges nothing from the moment on at which RESETDRV is seen, nor if that came before its data.
+TEST_F(IsaSlaveTest, ResetdrvBeforeTheDataOfAReadLeavesItUnacknowledged) {
+  std::size_t void_reads = 0;
+  for (int phase = 0; phase < 3; ++phase) {
+    for (int moment = -3; moment <= 12; ++moment) {  // ticks from the fall of IOR# to RESETDRV
+      SCOPED_TRACE(::testing::Message() << "phase " << phase << ", RESETDRV at " << moment);
+      strobes.clear();
+      set_address(0x21A);
+      at_phase(phase);
+      bool data = false, seen = false;
+      std::size_t before = 0;  // acknowledges before RESETDRV was seen
+      for (int tick = -3; tick < 40; ++tick) {
+        if (tick == 0) both.in.isa_ior_n = false;
+        if (tick == moment) both.in.isa_resetdrv = true;
+        if (tick == moment + 12) both.in.isa_resetdrv = false;
+        ticks(1);
+        data = data || both.get("isa_sd_oe") != 0;
+        if (!seen) before = strobes.size();
+        seen = seen || both.get("host_reset") != 0;
+      }
+      both.in.isa_ior_n = true;
+      ticks(15);
+      EXPECT_EQ(strobes.size(), before);
+      if (!data) { EXPECT_TRUE(strobes.empty()); }
+      void_reads += data ? 0 : 1;
+    }
+  }
+  EXPECT_GE(void_reads, 3u * 4) << "from RESETDRV as early as IOR# on";
+}
+
 // host-bus:3.8
 TEST_F(IsaSlaveTest, ResetdrvResetsTheHostSide) {
   both.in.window_flat = false;
