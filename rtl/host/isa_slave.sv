@@ -244,7 +244,8 @@ module isa_slave (
       end else if (ends) begin
         wdata_q <= sd_low_q;
       end
-      if (io_load) sd_q <= {8'hFF, io_rdata};
+      // Of the interrupt controller a second time, as it is when the read acts.
+      if (io_load | pic_rd_o) sd_q <= {8'hFF, io_rdata};
       else if (mem_load) sd_q <= byte8_q ? {mem_rdata_i[15:8], mem_rdata_i[15:8]} : mem_rdata_i;
       if (spoilt) target_q <= 4'h0;
       if (finish & kind_q[Iow] & target_q[Other] & ~window_flat_q &
@@ -267,8 +268,8 @@ module isa_slave (
   assign hp_wdata_o   = wdata_q[7:0];
 
   assign pic_sel_o     = target_q[Pic];
-  assign pic_rd_o      = target_q[Pic] & (cycle_q == Start) & kind_q[Ior] &
-                         (cmd2_q == kind_q) & ~resetdrv;  // command still there, alone
+  // The first clk_pwm edge with data on the bus saw the command low, alone: they have been shown (host-bus:3.9/6).
+  assign pic_rd_o      = target_q[Pic] & (cycle_q == Show) & kind_q[Ior] & (cmd2_q == kind_q) & ~resetdrv;
   assign pic_wr_o      = target_q[Pic] & takes_effect & kind_q[Iow];
   assign pic_addr_o    = io_addr_q[1:0];
   assign pic_wdata_o   = wdata_q[7:0];

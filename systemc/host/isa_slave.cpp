@@ -8,7 +8,7 @@ namespace brick {
 
 // The first edge at which an output moves. MEMCS16# moves with clk_pwm, all others with clk_ref.
 Tick IsaSlave::next_event() const {
-  if (isa_sd_oe() != oe_shown_ || (cycle_ == Cycle::kStart && pic_sel()))
+  if (isa_sd_oe() != oe_shown_ || (cycle_ == Cycle::kShow && pic_sel()))
     return now_ + 1;  // pic_rd goes with the command
   const unsigned commands = command_pins();
   const std::uint8_t la = la_pins();
@@ -127,7 +127,7 @@ void IsaSlave::cycle_edge() {
   const bool turns_page = finished() && (kind_ & kIow) && (target_ & kOther) && addresses_page();
 
   const Cycle next = next_cycle(io_load, mem_load);
-  if (io_load) sd_ = static_cast<std::uint16_t>(0xFF00 | io_read());
+  if (io_load || pic_rd()) sd_ = static_cast<std::uint16_t>(0xFF00 | io_read());
   if (mem_load && !io_load) sd_ = byte8_ ? static_cast<std::uint16_t>((in.mem_rdata >> 8) * 0x101) : in.mem_rdata;
   if (spoilt(cmd2_)) target_ = 0;
   cycle_ = next;

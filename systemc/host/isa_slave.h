@@ -39,7 +39,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   // Interrupt controller
   bool pic_sel() const { return target_ & kPic; }
   bool pic_rd() const {
-    return pic_sel() && cycle_ == Cycle::kStart && (kind_ & kIor) && cmd2_ == kind_ && !host_reset();
+    return pic_sel() && cycle_ == Cycle::kShow && (kind_ & kIor) && cmd2_ == kind_ && !host_reset();
   }
   bool pic_wr() const { return pic_sel() && takes_effect() && (kind_ & kIow); }
   std::uint8_t pic_addr() const { return io_addr_ & 3; }

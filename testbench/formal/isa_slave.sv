@@ -1,6 +1,6 @@
 // Rules of the ISA slave towards the bus and towards what stands behind it, host-bus:3.4, host-bus:3.8, host-bus:3.9. A
 // step is half a period of clk_pwm, 4.2 ns; a pin may change at any, and an edge takes what stood a step before it. R1
-// to R5, R7 and R8 hold for any pins. R6 is about hosts that have been sound so far: one command at a time, high for 24
+// to R5, R7 to R9 hold for any pins. R6 is about hosts that have been sound so far: one command at a time, high for 24
 // steps between two (host-bus:3.4, row 11: 170 ns) and low for 8 or more, write data standing from 5 steps after the
 // fall (row 6) to the rise, no RESETDRV. Switches stand. Of the data two bits are followed, one of each lane.
 // proof: pdr
@@ -24,6 +24,9 @@
 // fault R8: a write that has ended is made while RESETDRV is seen (rtl/host/isa_slave.sv)
 //   - assign takes_effect = finish & ~resetdrv;
 //   + assign takes_effect = finish;
+// fault R9: a read acknowledges before its data are on the bus (rtl/host/isa_slave.sv)
+//   - target_q[Pic] & (cycle_q == Show) & kind_q[Ior] & (cmd2_q == kind_q)
+//   + target_q[Pic] & (cycle_q == Start) & kind_q[Ior] & (cmd2_q == kind_q)
 `default_nettype none
 
 module isa_slave_rules (
@@ -127,6 +130,10 @@ module isa_slave_rules (
     if (edge_ref) taken_q <= (taken_q | (hp_sel & hp_rd)) & ~hp_rd_done & ~hp_wr & ~host_reset;
   end
 
+  // Data have been on the bus since the last edge of clk_ref.
+  logic shown_q = 1'b0;
+  always @($global_clock) shown_q <= (shown_q & ~edge_ref) | (oe != 2'b00);
+
   // What a clk_ref ago was asked of the RAM.
   logic        mem_sel_q = 1'b0, mem_rd_q = 1'b0;
   logic [14:0] mem_addr_q;
@@ -189,6 +196,12 @@ module isa_slave_rules (
     if (edge_ref && host_reset) begin
       R8: assert (!hp_wr && !hp_rd_done && !pic_wr && !pic_rd && !mem_wr);
       C8: cover (pic_sel);
+    end
+
+    // R9: A read acknowledges only what has been on the bus.
+    if (edge_ref && pic_rd) begin
+      R9: assert (shown_q);
+      C9: cover (oe == 2'b00);
     end
   end
 

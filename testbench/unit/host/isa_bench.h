@@ -63,10 +63,11 @@ class IsaBench {
   };
   std::vector<Strobe> strobes;
   std::uint8_t port = 0xA0;  // what the host port shows at +0
+  std::uint8_t pic = 0xB0;   // and the interrupt controller at +8
 
   void tick() {
     both.in.hp_rdata = static_cast<std::uint8_t>(port + both.get("hp_addr"));
-    both.in.pic_rdata = static_cast<std::uint8_t>(0xB0 + both.get("pic_addr"));
+    both.in.pic_rdata = static_cast<std::uint8_t>(pic + both.get("pic_addr"));
     if (is_ref_edge(both.now() + 1)) {  // the edge about to come sees them
       if (both.get("hp_wr")) strobes.push_back({"hp_wr", both.get("hp_addr"), both.get("hp_wdata")});
       if (both.get("hp_rd_done")) strobes.push_back({"hp_rd", both.get("hp_addr"), 0});

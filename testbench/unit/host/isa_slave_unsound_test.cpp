@@ -53,6 +53,31 @@ TEST_F(IsaSlaveTest, ReadTooShortForItsDataTakesNothing) {
   EXPECT_GT(reads, 0u);
 }
 
+// host-bus:3.9/6 of an 8259: a read acknowledges if, and only if, it has shown data for a tick, however short it was.
+TEST_F(IsaSlaveTest, ReadAcknowledgesIfAndOnlyIfItHasShownData) {
+  unsigned shown = 0, not_shown = 0;
+  for (int phase = 0; phase < 3; ++phase) {
+    for (int width = 1; width <= 24; ++width) {
+      SCOPED_TRACE(::testing::Message() << "phase " << phase << ", low for " << width);
+      strobes.clear();
+      set_address(0x21A);
+      at_phase(phase);
+      both.in.isa_ior_n = false;
+      bool data = false;
+      for (int n = 0; n < width; ++n) {
+        data = data || both.get("isa_sd_oe") != 0;
+        tick();
+      }
+      both.in.isa_ior_n = true;
+      ticks(20);
+      EXPECT_EQ(strobes, data ? (std::vector<Strobe>{{"pic_rd", 2, 0}}) : std::vector<Strobe>{});
+      ++(data ? shown : not_shown);
+    }
+  }
+  EXPECT_GE(shown, 3u * 16) << "data are there after eight ticks, 68 ns";
+  EXPECT_GE(not_shown, 3u * 4) << "not within 34 ns";
+}
+
 // A read of an 8259 acknowledges at the edge that takes the byte: not if the command is gone by then, or another came.
 TEST_F(IsaSlaveTest, ReadThatEndsBeforeItsByteIsTakenAcknowledgesNothing) {
   for (int phase = 0; phase < 3; ++phase) {
@@ -97,6 +122,7 @@ TEST_F(IsaSlaveTest, CommandThatWasLowAtAResetDoesNothing) {
         ticks(moment);
         if (line) {
           both.reset();
+          EXPECT_EQ(both.get("isa_iochrdy"), 1u);
         } else {
           both.in.isa_resetdrv = true;
           ticks(12);
