@@ -89,7 +89,7 @@ module ssi (
   logic [71:0]  high;
   logic [63:0]  refused;
   for (genvar n = 0; n < 8; n++) begin : gen_channel
-    logic       here, shot, single, driver, gray, odd, even, parity_error;
+    logic       here, begins, shot, single, driver, gray, odd, even, parity_error;
     logic [5:0] bits;
     assign here = hit & (channel == n[2:0]) & (place == 2'd0);
     ssi_channel_regs u_regs (
@@ -100,6 +100,7 @@ module ssi (
       .count_i        (wdata_i[5:0]),
       .word_o         (control[16*n+:16]),
       .high_o         (high[9*n+:9]),
+      .single_i       (begins),
       .shot_i         (shot),
       .position_i     (position[32*n+24+:8]),
       .parity_error_i (parity_error),
@@ -128,6 +129,7 @@ module ssi (
       .data_i         (data[n]),
       .clk_o          (clk_o[n]),
       .active_o       (active[n]),
+      .single_o       (begins),
       .shot_o         (shot),
       .position_o     (position[32*n+:32]),
       .parity_error_o (parity_error),

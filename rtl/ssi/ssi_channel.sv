@@ -22,7 +22,8 @@ module ssi_channel (
   input  wire logic       data_i,    // pin, behind two flip-flops
   output logic            clk_o,     // pin
   output logic            active_o,
-  output logic            shot_o,    // turns when a single frame has begun
+  output logic            single_o,  // a single frame begins at this edge
+  output logic            shot_o,    // turns when one has begun
   output logic [31:0]     position_o,
   output logic            parity_error_o,
   output logic [7:0]      refused_o
@@ -33,6 +34,7 @@ module ssi_channel (
   logic [31:0] shift_q, position_q;
   logic [7:0]  refused_q;
   assign begins     = start_i & enable_i;
+  assign single_o   = begins & shot_i;
   assign parity_bit = (odd_i | even_i) & (rises_q == 6'd1);
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
@@ -57,7 +59,7 @@ module ssi_channel (
           shift_q  <= 32'h0;
           odd_q    <= 1'b0;
           rises_q  <= bits_i + {5'd0, odd_i | even_i} + 6'd1;
-          shot_q   <= shot_q ^ shot_i;
+          shot_q   <= shot_q ^ single_o;
         end else if (rise_i && active_q) begin
           first_q <= 1'b0;
           rises_q <= rises_q - 6'd1;

@@ -14,6 +14,7 @@ module ssi_channel_regs (
   output logic [15:0]      word_o,   // as it reads
   output logic [8:0]       high_o,   // parity error, position 31..24
   // from and to the channel, which runs on clk_pwm
+  input  wire logic        single_i,
   input  wire logic        shot_i,
   input  wire logic [7:0]  position_i,
   input  wire logic        parity_error_i,
@@ -37,7 +38,8 @@ module ssi_channel_regs (
       high_q      <= 9'h0;
       shot_seen_q <= 1'b0;
     end else begin
-      shot_seen_q <= shot_i;
+      // A single frame that begins at the edge of a write is the old word's: it clears nothing of the new one.
+      shot_seen_q <= shot_i ^ (we_i & single_i);
       if (we_i) word_q <= geo_i ? {12'h0, count_i[3:0]} : {flags_i, 4'h0, count_i};
       else if (shot_i != shot_seen_q) word_q[12] <= 1'b0;
       if (rd_a_i) high_q <= {parity_error_i, position_i};

@@ -66,8 +66,11 @@ void Ssi::read_taken(bool x, unsigned address) {
 void Ssi::write(bool x, unsigned address, std::uint32_t value) {
   const auto [place, n] = where(x, address);
   Group& g = group_[n / kChannelsEach];
-  if (place == Place::kControl)
-    g.channel[n % kChannelsEach].control = value & (geo ? regs::ssi_geo::kControl : regs::ssi_brick::kControl).written;
+  if (place == Place::kControl) {
+    Channel& c = g.channel[n % kChannelsEach];
+    c.control = value & (geo ? regs::ssi_geo::kControl : regs::ssi_brick::kControl).written;
+    c.shot_ends = kNever;  // of a single frame that began at this edge, with the word before
+  }
   if (place == Place::kTiming) g.word = value & (geo ? regs::ssi_geo::kTiming : regs::ssi_brick::kTiming).written;
 }
 

@@ -20,6 +20,9 @@
 // fault R8: lengths above 32 as they are asked for (rtl/ssi/ssi_channel_regs.sv)
 //   - (asked > MostBits) ? MostBits : asked
 //   + asked
+// fault R9: a word that is written with the trigger has its enable cleared (rtl/ssi/ssi_channel_regs.sv)
+//   - shot_i ^ (we_i & single_i)
+//   + shot_i
 `default_nettype none
 
 module ssi_channel_rules (
@@ -41,12 +44,12 @@ module ssi_channel_rules (
 
   (* anyconst *) logic geo;  // product
 
-  logic        clk, active, shot, parity_error, enable, single, driver, gray, odd, even;
+  logic        clk, active, begins, shot, parity_error, enable, single, driver, gray, odd, even;
   logic [5:0]  bits;
   logic [15:0] word;
   ssi_channel_regs regs (.clk_ref_i(clk_i), .rst_ni(rst_nq), .geo_i(geo), .we_i, .rd_a_i(1'b0), .flags_i, .count_i,
-                         .word_o(word), .high_o(), .shot_i(shot), .position_i(8'h0), .parity_error_i(1'b0),
-                         .enable_o(enable), .shot_o(single), .driver_o(driver), .bits_o(bits), .gray_o(gray),
+                         .word_o(word), .high_o(), .single_i(begins), .shot_i(shot), .position_i(8'h0),
+                         .parity_error_i(1'b0), .enable_o(enable), .shot_o(single), .driver_o(driver), .bits_o(bits), .gray_o(gray),
                          .odd_o(odd), .even_o(even));
   logic [31:0] position;
   logic        data;
@@ -55,8 +58,8 @@ module ssi_channel_rules (
   ssi_channel dut (.clk_pwm_i(clk_i), .rst_ni(rst_nq), .moves_i(start_i | refuse_i | fall_i | rise_i | more_i),
                    .start_i, .refuse_i, .fall_i, .rise_i, .enable_i(enable),
                    .shot_i(single), .driver_i(driver), .bits_i(bits), .gray_i(gray), .odd_i(odd), .even_i(even),
-                   .data_i(data), .clk_o(clk), .active_o(active), .shot_o(shot), .position_o(position),
-                   .parity_error_o(parity_error), .refused_o(refused));
+                   .data_i(data), .clk_o(clk), .active_o(active), .single_o(begins), .shot_o(shot),
+                   .position_o(position), .parity_error_o(parity_error), .refused_o(refused));
 
   // The group: at rest, clock high, clock low.
   logic run_q = 1'b0, low_q = 1'b0;
@@ -117,10 +120,20 @@ module ssi_channel_rules (
     refused_q  <= refused_q + {7'd0, refuse_i & enable};
   end
 
+  // A single frame that began a tick ago, two ticks ago, and no word was written since, at that edge neither.
+  logic single1_q = 1'b0, single2_q = 1'b0, enable_q = 1'b0, we_q = 1'b0;
+  always @(posedge clk_i) begin
+    single1_q <= start_i && enable && single && !we_i;
+    single2_q <= single1_q && !we_i;
+    enable_q  <= word[12];
+    we_q      <= we_i;
+  end
+
   // From inside: the clocks left, a whole word.
   (* hierconn *) wire logic [5:0] \dut.rises_q ;
   (* hierconn *) wire logic       \dut.load_q , \dut.first_q , \dut.odd_q , \sync.sync1_q , \sync.sync2_q ;
   (* hierconn *) wire logic [31:0] \dut.shift_q ;
+  (* hierconn *) wire logic        \regs.shot_seen_q ;
 
   always @(posedge clk_i) if (rst_nq) begin
     // L1: The design's count of clocks left and the one here of those that were make the whole.
@@ -138,6 +151,9 @@ module ssi_channel_rules (
     // L4: Bit k moves up with every bit that follows it.
     L4: assert (!plain_q || {1'b0, k} > all_q - 6'd2 || seen_q < all_q - {1'b0, k} || all_q == 6'd0 ||
                 \dut.shift_q [place[4:0]] == bit_q);
+
+    // L5: A turn that has not been seen is that of a single frame whose word stands.
+    L5: assert ((shot != \regs.shot_seen_q ) == single1_q);
 
     // R1: The clock is low only while the group's is, and only in a frame of its own.
     if (!clk) begin
@@ -184,6 +200,12 @@ module ssi_channel_rules (
       R8: assert (bits >= 6'd12 && bits <= 6'd32 && !(odd && even) && (word[15:14] != 2'b11 || !(odd || even)) &&
                   (!geo || (bits <= 6'd24 && bits[1:0] == 2'b00 && !odd && !even)));
       C8: cover (!geo && bits == 6'd32 && odd);
+    end
+
+    // R9: The trigger of a single frame ends the enable of its own word, nothing that of a word written since or with it.
+    if (!geo && !we_q) begin
+      R9: assert (word[12] == (enable_q && !single2_q));
+      C9: cover (enable_q && !word[12]);
     end
   end
 

@@ -213,27 +213,34 @@ TYPED_TEST(SsiTriggers, OfOneGroupAreNothingToTheOther) {
   EXPECT_EQ(this->rig.read(true, brick_word(8) + 1), 1u);
 }
 
-// A word that is written at the edge of clk_ref that would end a single frame's enable stands: there is one more frame.
+// servo-ic:11.3/5: a word that is written at the edge that sees the trigger of a single frame (place 2), or at the edge
+// of clk_ref that would end its enable, stands. The frame is that of the word before; a next one follows, and with a
+// continuous word one more.
 TYPED_TEST(SsiTriggers, AWriteStandsAgainstTheEndOfASingleFrame) {
   BRICK_COVERS("SSI-1");
-  for (Tick place = 0; place < 3; ++place) {
-    SCOPED_TRACE(place);
-    this->rig.encoders = nullptr;
-    this->rig.reset(false);
-    this->wire(2, {}, 0);
-    this->rig.write(true, 0x2F, kFast);
-    this->rig.write(true, brick_word(2), 0x3400 | 12);
-    this->rig.run(place);
-    this->rig.begin({true, true, brick_word(2), 0x3400 | 13});
-    this->trigger();
-    // At place 2 the edge that sees the trigger is the one that writes; the enable ends with the next.
-    EXPECT_EQ(this->rig.read(true, brick_word(2)), (place == 2 ? 0x2000u : 0x3000u) | 13);
-    this->frame_over();
-    EXPECT_EQ(this->edges.size(), 26u);
-    this->trigger();
-    this->frame_over();
-    EXPECT_EQ(this->edges.size(), place == 2 ? 26u : 26u + 28u);
-  }
+  for (const bool single : {true, false})
+    for (Tick place = 0; place < 3; ++place) {
+      SCOPED_TRACE(::testing::Message() << (single ? "single, place " : "continuous, place ") << place);
+      const std::uint32_t word = (single ? 0x3000u : 0x1000u) | 13;
+      this->rig.encoders = nullptr;
+      this->rig.reset(false);
+      this->wire(2, {}, 0);
+      this->rig.write(true, 0x2F, kFast);
+      this->rig.write(true, brick_word(2), 0x3400 | 12);
+      this->rig.run(place);
+      this->rig.begin({true, true, brick_word(2), word | 0x0400});
+      this->trigger();
+      EXPECT_EQ(this->rig.read(true, brick_word(2)), word);
+      this->frame_over();
+      EXPECT_EQ(this->edges.size(), 26u) << "of 12 bits";
+      this->trigger();
+      EXPECT_EQ(this->rig.read(true, brick_word(2)), single ? 0x2000u | 13 : word);
+      this->frame_over();
+      EXPECT_EQ(this->edges.size(), 26u + 28u);
+      this->trigger();
+      this->frame_over();
+      EXPECT_EQ(this->edges.size(), 26u + (single ? 28u : 2 * 28u));
+    }
 }
 
 // servo-ic:11.9/7: what is written in a frame. Enable and number of bits wait for the next trigger.
