@@ -31,7 +31,9 @@ module ssi_channel_regs (
 
   logic [15:0] word_q;
   logic [8:0]  high_q;
-  logic        shot_seen_q;
+  logic        shot_seen_q, geo_gray;
+  // A Geo PMAC's code stands in bit 11 as a Brick's: that of the last mode that was on, for a frame that goes on.
+  assign geo_gray = count_i[1] ? count_i[0] : word_q[11];
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
       word_q      <= 16'h0;
@@ -40,22 +42,22 @@ module ssi_channel_regs (
     end else begin
       // A single frame that begins at the edge of a write is the old word's: it clears nothing of the new one.
       shot_seen_q <= shot_i ^ (we_i & single_i);
-      if (we_i) word_q <= geo_i ? {12'h0, count_i[3:0]} : {flags_i, 4'h0, count_i};
+      if (we_i) word_q <= geo_i ? {4'h0, geo_gray, 7'h0, count_i[3:0]} : {flags_i, 4'h0, count_i};
       else if (shot_i != shot_seen_q) word_q[12] <= 1'b0;
       if (rd_a_i) high_q <= {parity_error_i, position_i};
     end
   end
 
   // The driver's bit cannot be read.
-  assign word_o = geo_i ? word_q : {word_q[15:11], 1'b0, word_q[9:0]};
+  assign word_o = geo_i ? {12'h0, word_q[3:0]} : {word_q[15:11], 1'b0, word_q[9:0]};
   assign high_o = high_q;
 
   logic [5:0] asked;
   assign asked    = word_q[5:0];
   assign enable_o = geo_i ? word_q[1] : word_q[12];
   assign shot_o   = ~geo_i & word_q[13];
-  assign driver_o = geo_i ? word_q[1] : word_q[10];
-  assign gray_o   = geo_i ? word_q[0] : word_q[11];
+  assign driver_o = geo_i | word_q[10];
+  assign gray_o   = word_q[11];
   assign odd_o    = ~geo_i & (word_q[15:14] == 2'b01);
   assign even_o   = ~geo_i & (word_q[15:14] == 2'b10);
   assign bits_o   = geo_i ? LeastBits + {2'b00, word_q[3:2], 2'b00}

@@ -69,6 +69,7 @@ void Ssi::write(bool x, unsigned address, std::uint32_t value) {
   if (place == Place::kControl) {
     Channel& c = g.channel[n % kChannelsEach];
     c.control = value & (geo ? regs::ssi_geo::kControl : regs::ssi_brick::kControl).written;
+    if (!geo || control(c).enable()) c.gray = control(c).gray();
     c.shot_ends = kNever;  // of a single frame that began at this edge, with the word before
   }
   if (place == Place::kTiming) g.word = value & (geo ? regs::ssi_geo::kTiming : regs::ssi_brick::kTiming).written;
@@ -217,7 +218,7 @@ void Ssi::rise(Tick t, unsigned group) {
     const ssi::Control control = this->control(c);
     const bool level = has(data2_, n), parity_bit = control.parity() && c.rises == 1;
     if (!c.first) c.odd = c.odd != level;
-    if (!c.first && !parity_bit) c.shift = c.shift << 1 | (level != (control.gray() && (c.shift & 1) != 0) ? 1 : 0);
+    if (!c.first && !parity_bit) c.shift = c.shift << 1 | (level != (c.gray && (c.shift & 1) != 0) ? 1 : 0);
     c.first = false;
     if (--c.rises > 0) continue;
     c.active = false;

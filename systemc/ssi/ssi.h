@@ -43,6 +43,7 @@ class Ssi final : public sc_core::sc_module, public ModelBlock {
     std::uint8_t refused = 0;
     unsigned rises = 0;  // left
     bool active = false, first = false, odd = false, parity_error = false;
+    bool gray = false;        // of a Geo PMAC that of the last mode that was on
     Tick shot_ends = kNever;  // edge that takes the enable bit away
   };
   struct Group {

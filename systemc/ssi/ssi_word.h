@@ -14,9 +14,9 @@ struct Control {
   bool geo;
   std::uint32_t word;
 
-  bool enable() const { return geo ? on() : regs::ssi_brick::control::kTrigger.is_set(word); }
+  bool enable() const { return geo ? (mode() & 2) != 0 : regs::ssi_brick::control::kTrigger.is_set(word); }
   bool single() const { return !geo && regs::ssi_brick::control::kOneShot.is_set(word); }
-  bool driver() const { return geo ? on() : regs::ssi_brick::control::kDriver.is_set(word); }
+  bool driver() const { return geo || regs::ssi_brick::control::kDriver.is_set(word); }
   bool gray() const { return geo ? (mode() & 1) != 0 : regs::ssi_brick::control::kGray.is_set(word); }
   bool odd() const { return parity_code() == 1; }
   bool even() const { return parity_code() == 2; }
@@ -28,7 +28,6 @@ struct Control {
 
  private:
   unsigned mode() const { return regs::ssi_geo::control::kMode.get(word); }
-  bool on() const { return (mode() & 2) != 0; }
   unsigned parity_code() const { return geo ? 0 : regs::ssi_brick::control::kParity.get(word); }
 };
 

@@ -23,6 +23,12 @@
 // fault R9: a word that is written with the trigger has its enable cleared (rtl/ssi/ssi_channel_regs.sv)
 //   - shot_i ^ (we_i & single_i)
 //   + shot_i
+// fault R10: off, the clock stops in the frame (rtl/ssi/ssi_channel_regs.sv)
+//   - geo_i | word_q[10]
+//   + geo_i ? word_q[1] : word_q[10]
+// fault R11: the code of a mode that is off (rtl/ssi/ssi_channel_regs.sv)
+//   - count_i[1] ? count_i[0] : word_q[11]
+//   + count_i[0]
 `default_nettype none
 
 module ssi_channel_rules (
@@ -49,8 +55,8 @@ module ssi_channel_rules (
   logic [15:0] word;
   ssi_channel_regs regs (.clk_ref_i(clk_i), .rst_ni(rst_nq), .geo_i(geo), .we_i, .rd_a_i(1'b0), .flags_i, .count_i,
                          .word_o(word), .high_o(), .single_i(begins), .shot_i(shot), .position_i(8'h0),
-                         .parity_error_i(1'b0), .enable_o(enable), .shot_o(single), .driver_o(driver), .bits_o(bits), .gray_o(gray),
-                         .odd_o(odd), .even_o(even));
+                         .parity_error_i(1'b0), .enable_o(enable), .shot_o(single), .driver_o(driver),
+                         .bits_o(bits), .gray_o(gray), .odd_o(odd), .even_o(even));
   logic [31:0] position;
   logic        data;
   sync2 #(.Reset(1'b1)) sync (.clk_i, .rst_ni(rst_nq), .d_i(data_i), .q_o(data));
@@ -129,6 +135,13 @@ module ssi_channel_rules (
     we_q      <= we_i;
   end
 
+  // A fall in a frame of its own, on a Geo PMAC; the code of the last mode there that was on.
+  logic fell_q = 1'b0, code_q = 1'b0;
+  always @(posedge clk_i) begin
+    fell_q <= geo && fall_i && (frame_q || (start_i && enable));
+    if (rst_nq && we_i && count_i[1]) code_q <= count_i[0];
+  end
+
   // From inside: the clocks left, a whole word.
   (* hierconn *) wire logic [5:0] \dut.rises_q ;
   (* hierconn *) wire logic       \dut.load_q , \dut.first_q , \dut.odd_q , \sync.sync1_q , \sync.sync2_q ;
@@ -202,10 +215,22 @@ module ssi_channel_rules (
       C8: cover (!geo && bits == 6'd32 && odd);
     end
 
-    // R9: The trigger of a single frame ends the enable of its own word, nothing that of a word written since or with it.
+    // R9: The trigger of a single frame ends the enable of its own word, not that of a word written with it or since.
     if (!geo && !we_q) begin
       R9: assert (word[12] == (enable_q && !single2_q));
       C9: cover (enable_q && !word[12]);
+    end
+
+    // R10: A Geo PMAC shows each clock of a frame that has begun, also when its word has switched the channel off.
+    if (fell_q) begin
+      R10: assert (!clk);
+      C10: cover (!enable);
+    end
+
+    // R11: Its code is that of the last mode that was on.
+    if (geo) begin
+      R11: assert (gray == code_q);
+      C11: cover (frame_q && gray && !enable && !word[0]);
     end
   end
 

@@ -261,6 +261,38 @@ TYPED_TEST(SsiTriggers, AFrameEndsAsItBeganThoughItsChannelIsDisabled) {
   EXPECT_EQ(this->edges.size(), 50u);
 }
 
+// A Geo PMAC's word has no driver bit, and its mode is enable and code in one: off in a frame, with another length, it
+// changes nothing of that frame. Nor does what is off for a part of it only.
+TYPED_TEST(SsiTriggers, AGeoFrameEndsAsItBeganThoughItsChannelIsSwitchedOff) {
+  BRICK_COVERS("SSI-1");
+  for (const unsigned mode : {2u, 3u})
+    for (const unsigned off : {0u, 1u})
+      for (const bool on_again : {false, true}) {
+        SCOPED_TRACE(::testing::Message() << mode << " then " << off << (on_again ? ", on again" : ""));
+        this->rig.encoders = nullptr;
+        this->rig.reset(true);
+        SsiEncoderParameters p;
+        p.bits = 20;
+        p.gray = mode == 3;
+        this->wire(2, p, 0x9C6B5);
+        this->rig.write(true, kGeoClock, 3);
+        this->rig.write(true, kGeoResult[1], 2u << 2 | mode);
+        const Tick seen = this->trigger();
+        this->rig.run(seen + 6 * 96 + 20 - this->rig.now());
+        this->rig.write(true, kGeoResult[1], 3u << 2 | off);
+        EXPECT_EQ(this->rig.read(true, kGeoResult[1]), 3u << 2 | off);
+        this->rig.run(5 * 96);
+        if (on_again) this->rig.write(true, kGeoResult[1], 2u << 2 | mode);
+        this->frame_over();
+        ASSERT_EQ(this->edges.size(), 2u * 21);
+        for (Tick i = 0; i < 42; ++i) ASSERT_EQ(this->edges[static_cast<std::size_t>(i)], seen + i * 48) << i;
+        EXPECT_EQ(this->rig.read(false, kGeoResult[1]), 0x9C6B5u);
+        this->trigger();
+        this->frame_over();
+        EXPECT_EQ(this->edges.size(), on_again ? 2u * 42 : 2u * 21);
+      }
+}
+
 // The driver acts at the next fall, and a pulse that has begun is never cut.
 TYPED_TEST(SsiTriggers, TheDriverActsAtOnceAndCutsNoPulse) {
   BRICK_COVERS("SSI-1");
