@@ -198,7 +198,7 @@ module isa_slave_rules (
       C8: cover (pic_sel);
     end
 
-    // R9: A read acknowledges only what has been on the bus.
+    // R9: A read acknowledges only when its data have been on the bus.
     if (edge_ref && pic_rd) begin
       R9: assert (shown_q);
       C9: cover (oe == 2'b00);
