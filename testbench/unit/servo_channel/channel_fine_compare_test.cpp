@@ -57,6 +57,14 @@ class ChannelFineCompareTest : public ChannelTest {
     rig_.write(2, words::kCompareIncrement, 2);
     control(1, kWord);
   }
+  // Channel 1 with 1/T, in which it comes to rest; channel 2 compares its position.
+  void to_the_end_of_cell_4(bool up) {
+    control(1, kWord | kCounterReset);
+    control(2, kWord | kFromChannel1);
+    control(1, kWord);
+    steps(1, 4, up, 20 * kSclk);
+    rig_.ticks(100 * kSclk);
+  }
   void place(unsigned channel, const Place& a, const Place& b, int increment) {
     rig_.write(channel, words::kCompareA, static_cast<std::uint32_t>(a.cell) & kCounterMask);
     rig_.write(channel, words::kTimer2, a.fraction);
@@ -205,11 +213,7 @@ TEST_F(ChannelFineCompareTest, ChangingToMldtAndBackLeavesNothing) {
   for (const unsigned channel : {1u, 2u})
     for (const bool up : {true, false}) {
       const int way = up ? 1 : -1;
-      control(1, kWord | kCounterReset);
-      control(2, kWord | kFromChannel1);
-      control(1, kWord);
-      steps(1, 4, up, 20 * kSclk);
-      rig_.ticks(100 * kSclk);
+      to_the_end_of_cell_4(up);
       place(channel, {4 * way, 2048}, {100 * way, 0}, 5);
       const bool before{equ(channel)};
       for (const std::uint32_t word : {decode_mode(regs::decode::kMldt) | kPfm | kFine, kWord}) {
@@ -285,11 +289,7 @@ TEST_F(ChannelFineCompareTest, WhatIsOverWithinAnSclkPeriodLeavesNothing) {
 TEST_F(ChannelFineCompareTest, TurningHardware1TOfTheSourceLeavesNothing) {
   for (const bool up : {true, false}) {
     const int way = up ? 1 : -1;
-    control(1, kWord | kCounterReset);
-    control(2, kWord | kFromChannel1);
-    control(1, kWord);
-    steps(1, 4, up, 20 * kSclk);
-    rig_.ticks(100 * kSclk);
+    to_the_end_of_cell_4(up);
     place(2, {4 * way, 2048}, {100 * way, 0}, 5);
     const bool before{equ(2)};
     for (const std::uint32_t word : {kX4, kWord, kX4, kWord}) {
