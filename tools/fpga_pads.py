@@ -193,8 +193,8 @@ def rows(found):
                           worst(found, CLOCKS, "enable") + PAD_OUT + SKEW, 3 * TICK)),
              (ISA_IN, Row("host-bus:3.4, t8", "command to IOCHRDY low, 5 ticks between", 5 * TICK + isa_in +
                           out["isa_iochrdy_io"], 70.0)),
-             (ISA_IN, Row("host-bus:3.4, t4", "IOR# to data, 8 ticks between", 8 * TICK + isa_in + out["isa_sd_io"],
-                          120.0)),
+             (ISA_IN, Row("host-bus:3.4, t4", "IOR# to data, 8 ticks between, 11 to those of an 8259", 11 * TICK +
+                          isa_in + out["isa_sd_io"], 120.0)),
              (ISA_IN, Row("host-bus:3.4, row 14", "MEMR# to data, 11 ticks between", 11 * TICK + isa_in +
                           out["isa_sd_io"], 173.0)),
              (ISA_IN, Row("host-bus:3.4, row 16", "LA to MEMCS16#, 3 ticks between", 3 * TICK + isa_in +

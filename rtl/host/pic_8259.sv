@@ -19,7 +19,7 @@ module pic_8259 (
   output logic [7:0]      isr_o,
   output logic [7:0]      imr_o,
   output logic            level_o,  // 1: lines are level-sensed
-  output logic            request_o,  // INT is to be high after the coming edge
+  output logic            request_o,  // INT is to be high after the coming edge, unless served_o
   output logic            served_o    // a request is acknowledged
 );
 
@@ -33,9 +33,9 @@ module pic_8259 (
   localparam logic [1:0] Acknowledge = brick_regs_pkg::Pic8259VectorAddr[1:0];
 
   logic [7:0] line2_q;  // behind the synchroniser
-  logic [7:0] armed_d, armed_q;  // the line has been low since its last acknowledge
-  logic [7:0] isr_d, isr_q, imr_d, imr_q;
-  logic [2:0] lowest_d, lowest_q;  // level of the lowest priority
+  logic [7:0] armed_w, armed_d, armed_q;  // the line has been low since its last acknowledge
+  logic [7:0] isr_w, isr_d, isr_q, imr_d, imr_q;
+  logic [2:0] lowest_w, lowest_d, lowest_q;  // level of the lowest priority
   logic [4:0] vector_d, vector_q;
   logic [1:0] step_d, step_q;
   logic       icw3_d, icw3_q, icw4_d, icw4_q;  // will be written
@@ -81,32 +81,39 @@ module pic_8259 (
   assign ocw2_end      = wdata_i[brick_regs_pkg::Pic8259Ocw2EoiLsb];
   assign ocw2_level    = ocw2_specific ? wdata_i[brick_regs_pkg::Pic8259Ocw2IrLsb +: 3] : level_serviced;
 
+  // Writes; an acknowledge never comes with one. INT is made of `_w`: at an acknowledge it falls whatever is left.
   always_comb begin
-    isr_d    = isr_q;
-    lowest_d = lowest_q;
+    isr_w    = isr_q;
+    lowest_w = lowest_q;
     turn_d   = turn_q;
     // A line that is low now arms its next edge, whatever clears it.
-    armed_d  = armed_q;
+    armed_w  = armed_q;
+    if (ocw2 && ocw2_end && (ocw2_specific || !rank_serviced[3])) begin
+      isr_w[ocw2_level] = 1'b0;
+      if (ocw2_turn) lowest_w = ocw2_level;
+    end
+    if (ocw2 && !ocw2_end) begin
+      if (!ocw2_specific) turn_d = ocw2_turn;
+      else if (ocw2_turn) lowest_w = ocw2_level;
+    end
+    if (icw1) begin
+      armed_w  = 8'h00;
+      isr_w    = 8'h00;
+      lowest_w = DefaultLevel;
+      turn_d   = 1'b0;
+    end
+    armed_w = armed_w | ~line2_q;
+  end
+
+  always_comb begin
+    armed_d  = armed_w;
+    isr_d    = isr_w;
+    lowest_d = lowest_w;
     if (ack) begin
       armed_d[level_ack] = 1'b0;
       if (!aeoi_q) isr_d[level_ack] = 1'b1;
       else if (turn_q) lowest_d = level_ack;
     end
-    if (ocw2 && ocw2_end && (ocw2_specific || !rank_serviced[3])) begin
-      isr_d[ocw2_level] = 1'b0;
-      if (ocw2_turn) lowest_d = ocw2_level;
-    end
-    if (ocw2 && !ocw2_end) begin
-      if (!ocw2_specific) turn_d = ocw2_turn;
-      else if (ocw2_turn) lowest_d = ocw2_level;
-    end
-    if (icw1) begin
-      armed_d  = 8'h00;
-      isr_d    = 8'h00;
-      lowest_d = DefaultLevel;
-      turn_d   = 1'b0;
-    end
-    armed_d = armed_d | ~line2_q;
   end
 
   always_comb begin
@@ -214,12 +221,12 @@ module pic_8259 (
   assign imr_o   = imr_q;
   assign level_o = level_q;
 
-  // INT is made of what the registers are after the coming edge: what a write masks or ends asks no more. A line goes
-  // a clock later.
+  // INT is made of what a write leaves in the registers: what it masks or ends asks no more. A line goes a clock later.
+  // Without the read, whose strobe comes from clk_pwm and has no time for two ranks; `served_o` stands for it.
   logic [7:0] asks, holds;
-  assign asks      = line2_q & (armed_d | {8{level_d}}) & ~imr_d;
-  assign holds     = isr_d & ~(imr_d & {8{special_d}});
-  assign request_o = (step_d == StepReady) & (rank(asks, lowest_d) < rank(holds, lowest_d));
+  assign asks      = line2_q & (armed_w | {8{level_d}}) & ~imr_d;
+  assign holds     = isr_w & ~(imr_d & {8{special_d}});
+  assign request_o = (step_d == StepReady) & (rank(asks, lowest_w) < rank(holds, lowest_w));
   assign served_o  = ack;
 
 endmodule : pic_8259

@@ -23,7 +23,8 @@ class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
   std::uint8_t isr() const { return registers_.isr; }
   std::uint8_t imr() const { return registers_.imr; }
   bool level() const { return registers_.level; }
-  bool request() const { return coming().pending(line2_); }  // after the coming edge, a line that falls a clock later
+  // After the coming edge, unless it is served; a line that falls goes a clock later.
+  bool request() const { return coming().pending(line2_); }
   bool served() const { return pending() && (reads_poll() || (in.rd && in.addr == kAcknowledge)); }
 
  private:

@@ -24,7 +24,7 @@
 //   - if (!aeoi_q) isr_d
 //   + if (1'b1) isr_d
 // fault R9: INT is asked for by what the registers were before the edge (rtl/host/pic_8259.sv)
-//   - assign request_o = (step_d == StepReady) & (rank(asks, lowest_d) < rank(holds, lowest_d));
+//   - assign request_o = (step_d == StepReady) & (rank(asks, lowest_w) < rank(holds, lowest_w));
 //   + assign request_o = pending;
 // fault R10: a line that is high at the reset has an edge (rtl/host/pic_8259.sv)
 //   - sync2 #(.Width(8), .Reset(8'hFF)) u_line_sync
@@ -94,7 +94,7 @@ module pic_8259_rules (
   // What asked for INT at the last edge: a line that fell at it still did. Whether one of them is above n.
   logic [7:0] irr_q;
   logic       request_q;
-  always_ff @(posedge clk_i) {irr_q, request_q} <= {irr, request};
+  always_ff @(posedge clk_i) {irr_q, request_q} <= {irr, request & ~served};
   assign asking = irr_q & ~imr;
   always_comb begin
     above_n = 1'b0;

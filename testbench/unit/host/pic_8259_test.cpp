@@ -20,8 +20,9 @@ class Rig {
  public:
   Pic8259 model{"pic"};
   Lockstep<Pic8259> both{make_rtl_pic_8259(), model, [](const Pic8259& m) {
-                           return Outputs{{"rdata", m.rdata()},  {"irr", m.irr()},     {"isr", m.isr()},
-                                          {"imr", m.imr()},      {"level", m.level()}, {"request", m.request()},
+                           return Outputs{{"rdata", m.rdata()},  {"irr", m.irr()},
+                                          {"isr", m.isr()},      {"imr", m.imr()},
+                                          {"level", m.level()},  {"request", m.request() && !m.served()},
                                           {"served", m.served()}};
                          }};
 

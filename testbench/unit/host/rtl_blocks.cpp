@@ -42,8 +42,9 @@ void drive(Vpic_8259& v, const Pic8259Inputs& in) {
   v.wdata_i = in.wdata;
 }
 Outputs sample(const Vpic_8259& v) {
-  return {{"rdata", v.rdata_o}, {"irr", v.irr_o},         {"isr", v.isr_o},      {"imr", v.imr_o},
-          {"level", v.level_o}, {"request", v.request_o}, {"served", v.served_o}};
+  const bool request = v.request_o && !v.served_o;  // as host_interrupt takes it
+  return {{"rdata", v.rdata_o}, {"irr", v.irr_o},     {"isr", v.isr_o},      {"imr", v.imr_o},
+          {"level", v.level_o}, {"request", request}, {"served", v.served_o}};
 }
 
 void drive(Vhost_interrupt& v, const HostInterruptInputs& in) {
