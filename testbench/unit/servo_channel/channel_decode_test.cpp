@@ -27,17 +27,21 @@ TEST_F(ChannelDecodeTest, X2CountsTheEdgesOfA) {
   EXPECT_EQ(quarters(regs::decode::kX2Cw, true), (std::vector<int>{1, 0, 1, 0, 1, 0, 1, 0}));
   EXPECT_EQ(quarters(regs::decode::kX2Cw, false), (std::vector<int>{0, -1, 0, -1, 0, -1, 0, -1}));
   EXPECT_EQ(quarters(regs::decode::kX2Ccw, true), (std::vector<int>{-1, 0, -1, 0, -1, 0, -1, 0}));
+  EXPECT_EQ(quarters(regs::decode::kX2Ccw, false), (std::vector<int>{0, 1, 0, 1, 0, 1, 0, 1}));
 }
 
 TEST_F(ChannelDecodeTest, X1CountsBothWaysAtTheEdgeOfAWithBLow) {
   EXPECT_EQ(quarters(regs::decode::kX1Cw, true), (std::vector<int>{1, 0, 0, 0, 1, 0, 0, 0}));
   EXPECT_EQ(quarters(regs::decode::kX1Cw, false), (std::vector<int>{0, 0, 0, -1, 0, 0, 0, -1}));
   EXPECT_EQ(quarters(regs::decode::kX1Ccw, true), (std::vector<int>{-1, 0, 0, 0, -1, 0, 0, 0}));
+  EXPECT_EQ(quarters(regs::decode::kX1Ccw, false), (std::vector<int>{0, 0, 0, 1, 0, 0, 0, 1}));
 }
 
 TEST_F(ChannelDecodeTest, X4CountsEveryEdge) {
   EXPECT_EQ(quarters(regs::decode::kX4Cw, true, 4), (std::vector<int>{1, 1, 1, 1}));
+  EXPECT_EQ(quarters(regs::decode::kX4Cw, false, 4), (std::vector<int>{-1, -1, -1, -1}));
   EXPECT_EQ(quarters(regs::decode::kX4Ccw, true, 4), (std::vector<int>{-1, -1, -1, -1}));
+  EXPECT_EQ(quarters(regs::decode::kX4Ccw, false, 4), (std::vector<int>{1, 1, 1, 1}));
 }
 
 // A is the pulse, its rise counts; B is the direction, in the same sample, high upwards in mode 0 and downwards in 4.
