@@ -10,6 +10,8 @@ template <class Rig>
 class SsiFrames : public SsiOn<Rig> {};
 TYPED_TEST_SUITE(SsiFrames, SsiEngines, SsiNames);
 
+constexpr std::uint32_t kFastSsi = 0x180302;  // 4 MHz, falling SERVO: bits 9, 8
+
 TYPED_TEST(SsiFrames, GeoReadsEveryLengthAndCodeAtEveryClock) {
   BRICK_COVERS("SSI-1");
   std::uint64_t position = 0xA5C396;
@@ -228,6 +230,80 @@ TYPED_TEST(SsiFrames, BrickHoldsTheHighPartOfAReadPosition) {
   EXPECT_EQ(this->rig.read(false, brick_word(7) + 1), 0x12u);
   EXPECT_EQ(this->rig.read(false, brick_word(7)), 0xBCDEF0u);
   EXPECT_EQ(this->rig.read(false, brick_word(7) + 1), 0x9Au);
+}
+
+// servo-ic:11.3/7: nothing but a read of data A moves data B: no read of another word, no write.
+TYPED_TEST(SsiFrames, BrickHoldsTheHighPartThroughAllButAReadOfItsLowPart) {
+  BRICK_COVERS("SSI-1");
+  this->rig.reset(false);
+  SsiEncoderParameters p;
+  p.bits = 32;
+  this->wire(6, p, 0x12345678);
+  this->rig.write(true, 0x3F, kFastSsi);
+  this->rig.write(true, brick_word(6), 0x1400 | 32);
+  this->trigger();
+  this->frame_over();
+  EXPECT_EQ(this->rig.read(false, brick_word(6)), 0x345678u);
+  this->wire(6, p, 0x9ABCDEF0);
+  this->trigger();
+  this->frame_over();
+  for (unsigned address = 0x20; address < 0x40; ++address) {
+    SCOPED_TRACE(address);
+    this->rig.read(true, address);
+    if (address != brick_word(6)) this->rig.read(false, address);
+    this->rig.write(false, address, 0);
+    EXPECT_EQ(this->rig.read(false, brick_word(6) + 1), 0x12u);
+  }
+  this->rig.write(true, brick_word(6), 0x1400 | 32);
+  EXPECT_EQ(this->rig.read(false, brick_word(6) + 1), 0x12u);
+  EXPECT_EQ(this->rig.read(false, brick_word(6)), 0xBCDEF0u);
+  EXPECT_EQ(this->rig.read(false, brick_word(6) + 1), 0x9Au);
+}
+
+// servo-ic:11.3/1: behind a frame, too, there is nothing but the words of the table, each of its own group. The lines
+// are high: 32 ones and a one of even parity, which is an error.
+TYPED_TEST(SsiFrames, BrickShowsAFrameInItsWordsAndNowhereElse) {
+  BRICK_COVERS("SSI-1");
+  constexpr std::uint32_t kTiming[] = {kFastSsi, 0x180102};  // SERVO falls, PHASE falls
+  constexpr unsigned kRefused[] = {3, 5};
+  this->rig.reset(false);
+  for (unsigned n = 1; n <= 8; ++n) {
+    this->rig.write(true, brick_group(n), kTiming[(n - 1) / 4]);
+    this->rig.write(true, brick_word(n), 2u << 14 | 0x1400 | 32);
+  }
+  for (unsigned refused = 0; refused <= 5; ++refused) {  // the first is taken
+    this->rig.nets(false, refused > kRefused[0]);
+    this->rig.run(3);
+    this->rig.nets(true, true);
+    this->rig.run(3);
+  }
+  this->rig.run(40 * 30 + kRest);
+  for (unsigned address = 0; address < 64; ++address) {
+    SCOPED_TRACE(address);
+    const bool here = address >= 0x20;
+    const unsigned group = address >= 0x30 ? 1 : 0, word = address % 4;
+    const std::uint32_t y = word == 0 ? 0xFFFFFF : word == 1 ? 0x8000FF : 0;  // data A, then data B
+    const std::uint32_t x = word == 0 ? 0x9020 : word == 1 ? kRefused[group] : address % 16 == 15 ? kTiming[group] : 0;
+    EXPECT_EQ(this->rig.read(false, address), here ? y : 0u);
+    EXPECT_EQ(this->rig.read(true, address), here ? x : 0u);
+  }
+}
+
+// servo-ic:11.4/5: what is not listed reads 0.
+TYPED_TEST(SsiFrames, GeoShowsAFrameInItsWordsAndNowhereElse) {
+  BRICK_COVERS("SSI-1");
+  this->rig.reset(true);
+  this->rig.write(true, kGeoClock, 3);
+  for (const unsigned result : kGeoResult) this->rig.write(true, result, 0xE);
+  for (int triggers = 0; triggers < 4; ++triggers, this->rig.run(3)) this->trigger();
+  this->rig.run(25 * 96 + kRest);
+  for (unsigned address = 0; address < 64; ++address) {
+    SCOPED_TRACE(address);
+    const bool result = address == kGeoResult[0] || address == kGeoResult[1];
+    const bool refused = address == kGeoRefused[0] || address == kGeoRefused[1];
+    EXPECT_EQ(this->rig.read(false, address), result ? 0xFFFFFFu : 0u);
+    EXPECT_EQ(this->rig.read(true, address), result ? 0xEu : refused ? 3u : address == kGeoClock ? 3u : 0u);
+  }
 }
 
 // servo-ic:11.9/2: at 96 ticks a period a line may be late by 93; by 94 each bit is read as the one before.
