@@ -343,5 +343,93 @@ TEST_P(BoardMap, StrobesOfOtherDevicesDoNotTouchTheRegistersThatFollow) {
   }
 }
 
+// host-bus:2.6/5: the sample of a read is on the pins while that read is low, never in the next one, however soon that
+// falls: of another device nothing is driven, of ours its own word. Two falls are two ticks apart or more.
+TEST_P(BoardMap, NoReadShowsTheSampleOfTheOneBeforeIt) {
+  struct Place {
+    std::uint32_t address;
+    std::uint8_t aa;
+    std::uint32_t value;
+  };
+  const Place mine{kServoIcBase[1] + 0x14, 2, 0x222222}, others{0x000010, 1, 0};
+  rig.write(true, mine.address, mine.value);
+  for (const Place& before : {Place{kServoIcBase[0] + 0x14, 2, 0x111111}, {0x060007, 4, 0x3333}}) {
+    rig.write(true, before.address, before.value);
+    for (const Place& next : {mine, others})
+      for (Tick phase = 0; phase < kTicksPerRef; ++phase)
+        for (Tick low = 1; low <= 12; ++low)
+          for (Tick high = low < 2 ? 1 : 0; high <= 2; ++high) {
+            SCOPED_TRACE(::testing::Message() << std::hex << before.address << " then " << next.address << ", phase "
+                                              << phase << ", low for " << low << ", high for " << high);
+            rig.run(30 + phase);
+            const auto fall = [&](const Place& at) {
+              rig.in.pa_addr = at.address;
+              rig.in.pa_x = true;
+              rig.in.pa_aa = at.aa;
+              rig.in.pa_rd_n = false;
+              rig.apply();
+            };
+            const auto rise = [&] {
+              rig.in.pa_rd_n = true;
+              rig.apply();
+            };
+            fall(before);
+            rig.run(low);
+            rise();
+            rig.run(high);
+            fall(next);
+            for (int tick = 1; tick <= 12; ++tick) {
+              rig.run(1);
+              const bool driven = rig.get(pin::kPaDataOe) != 0;
+              ASSERT_TRUE(!driven || next.aa == mine.aa) << tick;
+              ASSERT_TRUE(!driven || rig.get(pin::kPaData) == mine.value) << tick;
+            }
+            ASSERT_EQ(rig.get(pin::kPaDataOe), next.aa == mine.aa ? 1u : 0u);
+            rise();
+          }
+  }
+}
+
+// docs/architecture.md, reset and power: the reset acts at once and forgets the cycle that it meets. D is let go, /TA
+// is low, and a strobe that is still low behind it asks for nothing, however many were counted before.
+TEST_P(BoardMap, AResetInACycleEndsItThoughItsStrobeStaysLow) {
+  struct Place {
+    std::uint32_t address;
+    std::uint8_t aa;
+    std::uint32_t kept;  // behind a reset
+  };
+  for (const Place& at : {Place{kHostSignals, 0, 0}, {kServoIcBase[0] + 0x14, 2, 0xFFFFFE}, {0x060007, 4, 0x55}})
+    for (unsigned before = 0; before < 4; ++before)
+      for (const bool write : {false, true}) {
+        SCOPED_TRACE(::testing::Message()
+                     << std::hex << at.address << (write ? ", write" : ", read") << ", behind " << before << " more");
+        bool& strobe_n = write ? rig.in.pa_wr_n : rig.in.pa_rd_n;
+        rig.write(true, at.address, 0x55);
+        for (unsigned i = 0; i < before; ++i) write ? rig.write(true, 0x050000, 0) : void(rig.read(true, 0x050000));
+        rig.in.pa_addr = at.address;
+        rig.in.pa_x = true;
+        rig.in.pa_aa = at.aa;
+        rig.in.pa_wdata = 0x0A;
+        rig.apply();
+        rig.run(2);
+        strobe_n = false;
+        rig.apply();
+        rig.run(write ? 1 : 12);  // a write that has only begun
+        EXPECT_EQ(rig.get(pin::kPaDataOe), write ? 0u : 1u);
+        rig.in.rst_n = false;
+        for (int tick = 0; tick < 60; ++tick) {
+          rig.in.rst_n = tick >= 20;
+          rig.apply();
+          rig.run(1);
+          ASSERT_EQ(rig.get(pin::kPaDataOe), 0u) << tick;
+          ASSERT_EQ(rig.get(pin::kPaTaN), 0u) << tick;
+        }
+        strobe_n = true;
+        rig.apply();
+        rig.run(12);
+        EXPECT_EQ(rig.read(true, at.address), at.kept);
+      }
+}
+
 }  // namespace
 }  // namespace brick

@@ -225,6 +225,37 @@ TEST_F(DpramCollisionTest, CpuStrobeThatEndsWhileBusyDoesNothing) {
   }
 }
 
+// host-bus:2.6/5: the word of a read that waits and is given up is not shown in the next one, which is another
+// device's and whose select comes with its strobe.
+TEST_F(DpramCollisionTest, NoReadOfAnotherDeviceShowsTheWordOfOneThatWasGivenUp) {
+  unsigned waited = 0;
+  for (int low = 8; low <= 14; ++low)
+    for (int host_goes = -6; host_goes <= 8; ++host_goes)
+      for (int high = 0; high <= 3; ++high) {
+        SCOPED_TRACE(::testing::Message() << low << ", host goes at " << host_goes << ", high for " << high);
+        host_start(20, false);
+        both.ref();
+        cpu_start_read(20);
+        for (int tick = 0; tick < low + high + kAccess + 6; ++tick) {
+          if (tick == low) {
+            waited += both.get("cpu_busy") != 0 ? 1 : 0;
+            cpu_end();
+            both.in.cpu_sel = true;
+          }
+          if (tick == low + high) {
+            cpu_start_read(20);
+            both.in.cpu_sel = false;
+          }
+          if (tick == low + host_goes) both.in.mem_sel = both.in.mem_rd = both.in.mem_wr = false;
+          if (tick >= low) { ASSERT_FALSE(both.get("cpu_drive")) << tick; }
+          both.tick();
+        }
+        cpu_end();
+        both.ticks(kRest);
+      }
+  EXPECT_GT(waited, 50u);
+}
+
 TEST_F(DpramCollisionTest, HostCommandThatEndsWhileBusyDoesNothing) {
   cpu_start_read(8);
   both.ref();
@@ -296,6 +327,50 @@ TEST_F(DpramCollisionTest, BusyEndsWithTheStrobeOfTheOther) {
     EXPECT_LE(both.now() - end, 3 + kTicksPerRef) << length << ": two flip-flops and a third, then clk_ref";
     host_end_read();
   }
+}
+
+// A reset acts at once, without a clock: nobody waits behind it, and no word is anybody's.
+TEST_F(DpramCollisionTest, AResetEndsBusyAndFreesTheWord) {
+  const auto reset = [this] {
+    cpu_end();
+    both.in.mem_sel = false;
+    both.in.rd_falls = both.in.wr_falls = 0;  // the counts are reset with it
+    both.reset();
+    EXPECT_FALSE(cpu_busy());
+    EXPECT_FALSE(host_busy());
+  };
+  for (const unsigned word : {0u, 8u})
+    for (const bool read : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << word << (read ? ", read" : ", write") << " of the CPU");
+      host_start(word, !read);
+      both.ref();
+      read ? cpu_start_read(word) : cpu_start_write(word, 0x5555);
+      both.ref(3);
+      EXPECT_TRUE(cpu_busy());
+      reset();
+      both.ref(2);
+
+      read ? cpu_start_read(word) : cpu_start_write(word, 0x5555);
+      both.ref(2);
+      host_start(word, !read);
+      both.ref(2);
+      EXPECT_TRUE(host_busy());
+      reset();
+      host_start(word, !read);
+      both.tick();
+      both.ref();
+      EXPECT_FALSE(host_busy());
+      host_end_read();
+
+      read ? cpu_start_read(word) : cpu_start_write(word, 0x5555);
+      both.ref(3);
+      both.ticks(kTicksPerRef - 1);
+      reset();
+      host_start(word, !read);
+      both.tick();  // the first edge of both clocks behind the reset
+      EXPECT_FALSE(host_busy());
+      host_end_read();
+    }
 }
 
 }  // namespace

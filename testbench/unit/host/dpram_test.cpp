@@ -337,6 +337,31 @@ TEST_F(DpramTest, StrobesOfOtherDevicesDoNotWait) {
   both.in.cpu_sel = false;
 }
 
+// host-bus:6.9/8: a strobe of another device shortly before, of either kind, neither takes /TA away nor keeps it up;
+// behind one that is short the RAM may come to the next up to two clocks late.
+TEST_F(DpramTest, StrobesOfOtherDevicesKeepNoTaUp) {
+  for (const bool other_reads : {true, false})
+    for (const bool read : {true, false})
+      for (int low = 1; low <= 4; ++low)
+        for (int high = 0; high <= 3; ++high) {
+          SCOPED_TRACE(::testing::Message() << other_reads << read << ", low for " << low << ", high for " << high);
+          if (low + high < 2) continue;
+          other_reads ? cpu_start_read(6) : cpu_start_write(6, 0xFFFF);
+          both.in.cpu_sel = false;
+          both.ticks(low);
+          cpu_end();
+          both.ticks(high);
+          read ? cpu_start_read(7) : cpu_start_write(7, 0x0707);
+          EXPECT_TRUE(cpu_wait());
+          both.ticks(kAccess + (read ? 1 : 0) + (low < 3 ? 2 : 0));
+          EXPECT_FALSE(cpu_wait());
+          cpu_end();
+          both.ticks(kRest);
+          EXPECT_EQ(host_read(6), 0u);
+        }
+  EXPECT_EQ(host_read(7), 0x0707u);
+}
+
 TEST_F(DpramTest, UnselectedStrobesDoNothing) {
   cpu_write(4, 0x0F0F);
   cpu_start_write(4, 0x1234);
@@ -350,7 +375,8 @@ TEST_F(DpramTest, UnselectedStrobesDoNothing) {
 TEST_F(DpramTest, NothingIsAskedForAfterAReset) {
   for (const bool before : {false, true}) {
     if (before) {
-      cpu_read(6);            // one: its count of strobes done is odd
+      cpu_read(6);  // one of each: their counts of strobes done are odd
+      cpu_write(7, 0x0707);
       cpu_start_write(6, 1);  // lost with the reset
     }
     both.ticks(2);
