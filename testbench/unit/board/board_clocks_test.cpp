@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "systemc/cosim/engines.h"
 #include "testbench/unit/board/board_rig.h"
@@ -129,6 +130,45 @@ TEST_P(BoardOn, TheIcWithDirectionZeroSuppliesTheWholeBoard) {
   }
   four.run(kHandOver);
   EXPECT_EQ(four.get(pin::kPhaseSource), kNoSource);
+}
+
+// servo-ic:1.3 and servo-ic:6.2: MACRO IC 0 is at $078400 with 64 words of either space, none of them a servo IC's, and
+// index 18 of the sources. Bit 0 of the kinds is its own.
+TEST_P(BoardOn, AMacroIcHasItsPlaceItsKindAndItsClocks) {
+  constexpr std::uint32_t kMacro = 0x78400, kClock = kMacro + 0x0C, kPwm = kMacro + 0x0D, kChannel = kMacro + 0x15;
+  BoardRig five = board_with(0x4000F);
+  const std::pair<bool, std::uint32_t> words[] = {{false, 0x00}, {false, 0x02}, {true, 0x0E},
+                                                  {true, 0x0F},  {false, 0x0F}, {true, 0x15}};
+  std::uint32_t value = 0x10101;
+  for (const auto& [x, offset] : words) five.write(x, kMacro + offset, value++);
+  value = 0x10101;
+  for (const auto& [x, offset] : words) {
+    EXPECT_EQ(five.read(x, kMacro + offset), value++) << offset;
+    EXPECT_EQ(five.read(x, kMacro + 0x20 + offset), 0u) << "node registers are not built, " << offset;
+  }
+  for (const std::uint32_t ic : {0x78000u, 0x78100u, 0x78200u, 0x78300u}) {
+    EXPECT_EQ(five.read(true, ic + kAdcStrobe), 0xFFFFFEu);
+    EXPECT_EQ(five.read(true, ic + kPwmWord), 0x197F0Fu);
+  }
+  for (const std::uint32_t other : {0x79400u, 0x7A400u, 0x7B400u}) EXPECT_EQ(five.read(true, other + 0x0E), 0u);
+  five.write(true, kPwm, pwm_word(300));
+  for (const unsigned kinds : {0xFu, 0xEu}) {
+    five.in.macro_gate = kinds;
+    five.apply();
+    five.run(3);
+    EXPECT_EQ(five.read(true, kChannel), kinds == 0xF ? 0u : 0x10106u);
+    five.write(true, kClock, clock_word(0, 3, 3));
+    EXPECT_EQ(five.read(true, kClock), clock_word(0, 3, kinds == 0xF ? 1 : 3));
+  }
+  five.write(true, kClock, clock_word(0, 3, 0));
+  five.run(60'000);  // past the period of the reset value, and the pins are taken with rising edges
+  EXPECT_EQ(five.get(pin::kPhaseSource), 18u);
+  EXPECT_EQ(five.get(pin::kSourceConflict), 0u);
+  constexpr Tick kPhase = 2 * 300 + 3, kSoon = 10 * kPhase;
+  const Tick rise = five.edge(pin::kPhase, 1, kSoon);
+  EXPECT_EQ(five.edge(pin::kPhase, 1, kSoon) - rise, kPhase);
+  const Tick fall = five.edge(pin::kServo, 0, kSoon);
+  EXPECT_EQ(five.edge(pin::kServo, 0, kSoon) - fall, 4 * kPhase);
 }
 
 // The divider variables of an IC that is not the source are stored and have no effect.

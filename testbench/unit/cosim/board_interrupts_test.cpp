@@ -203,6 +203,32 @@ TEST_P(BoardInterrupts, The8259TakesTheOtherControllersPlace) {
   EXPECT_EQ(io_read(11), 0xFFu);
 }
 
+// host-bus:4.1 and host-bus:4.5: the named signals are those of the controller that is fitted, by level and by edge.
+TEST_P(BoardInterrupts, NamedSignalsAreThoseOfTheControllerThatIsFitted) {
+  rig.run(6);
+  io_write(10, 0x05);
+  io_write(11, 0x04);
+  EXPECT_EQ(rig.get(pin::kPicMsk), 0x05u);
+  EXPECT_EQ(rig.get(pin::kPicElr), 0x04u);
+  rig.write(true, kHostSignals, 0x7);  // an edge, one that is masked, a level
+  rig.run(12);
+  EXPECT_EQ(rig.get(pin::kPicSig), 0x07u);
+  EXPECT_EQ(rig.get(pin::kPicIst), 0x05u);
+  rig.write(true, kHostSignals, 0);
+  rig.run(12);
+  EXPECT_EQ(rig.get(pin::kPicIst), 0x01u);
+  fit_8259();
+  EXPECT_EQ(rig.get(pin::kPicElr), 0x00u);
+  for (const auto& [offset, value] : {std::pair{8u, 0x1Bu}, {9u, 0x08u}, {9u, 0x01u}, {9u, 0xF5u}})  // LTIM
+    io_write(offset, static_cast<std::uint16_t>(value));
+  EXPECT_EQ(rig.get(pin::kPicElr), 0xFFu);
+  EXPECT_EQ(rig.get(pin::kPicMsk), 0x0Au);
+  rig.write(true, kHostSignals, 0xE);
+  rig.run(12);
+  EXPECT_EQ(rig.get(pin::kPicSig), 0x0Eu);
+  EXPECT_EQ(rig.get(pin::kPicIst), 0x0Au);
+}
+
 // host-bus:3.8/3: RESETDRV resets what stands behind the host bus, and a request with it; an 8259 does not see it.
 TEST_P(BoardInterrupts, ResetdrvResetsTheHostSideAndNo8259) {
   const auto resetdrv = [this] {

@@ -185,7 +185,8 @@ TEST_P(BoardMap, YWordsOfTheLatchesDoNothing) {
   rig.write(true, kServoIcBase[0] + 4, 0x3008D2);  // SERVO runs, so only the strobe is missing
   rig.run(10 * kPwmClockHz / 1000);
   rig.write(false, kWatchdogStrobe, 1);
-  // 25 ms after reset, not after that write.
+  EXPECT_EQ(rig.read(true, kWatchdogStrobe), 0u) << "and a read is no strobe, servo-ic:10/5";
+  // 25 ms after reset, not after those.
   EXPECT_LE(rig.edge(pin::kWdTripped, 1), 25 * kPwmClockHz / 1000 + 20);
 }
 
