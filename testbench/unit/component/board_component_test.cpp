@@ -275,7 +275,6 @@ Life trip() {
   return {kFitted, kSilent + kTrip + 400'000, live, {"wdo", "wd_tripped", "wd_led", "wd_relay"}, 2};
 }
 
-constexpr Tick kTicks = 1'000'000;
 constexpr std::uint32_t kFourIcs = 0x4000F, kAllIcs = 0x3FFFFF;  // the other two Verilated boards
 
 TEST(BoardComponent, ModelAgreesWithTheBoardOnItsBuses) {

@@ -12,17 +12,15 @@
 namespace brick::component {
 namespace {
 
-constexpr auto kRead = tlm::TLM_READ_COMMAND;
-constexpr auto kWrite = tlm::TLM_WRITE_COMMAND;
 constexpr std::uint64_t kBcr = 8 * 0xFFFFFBu + 4, kPctl = 8 * 0xFFFFFDu + 4;
 constexpr std::uint64_t kRam = 8 * 0x60000u, kWindow = 0xD0000, kHostIo = 0x210;
-constexpr std::uint64_t kClockControl = 8 * 0x78004u + 4;
+constexpr std::uint64_t kBoardClockControl = 8 * 0x78004u + 4;
 
 std::uint64_t now() { return sc_core::sc_time_stamp().value(); }
 
 enum class Bus { kPortA, kIo, kMemory };
-struct Bench {
-  Bench(const Engine& engine, Bus bus, std::function<void(Initiator&)> program)
+struct BoardBench {
+  BoardBench(const Engine& engine, Bus bus, std::function<void(Initiator&)> program)
       : board("board", time, {}, engine), initiator("initiator", std::move(program)) {
     bind(initiator, bus);
   }
@@ -36,9 +34,9 @@ struct Bench {
   Board board;
   Initiator initiator;
 };
-void simulate(const Engine& engine, Bus bus, const std::function<void(Initiator&)>& program) {
+void simulate_board(const Engine& engine, Bus bus, const std::function<void(Initiator&)>& program) {
   in_own_process([&] {
-    Bench bench(engine, bus, program);
+    BoardBench bench(engine, bus, program);
     sc_core::sc_start(100, sc_core::SC_US);
     EXPECT_TRUE(bench.initiator.ended);
   });
@@ -46,7 +44,7 @@ void simulate(const Engine& engine, Bus bus, const std::function<void(Initiator&
 
 TEST(BoardSocketProtocol, PortAKnowsWholeWordsOfItsDevices) {
   BRICK_COVERS("CARD-1");
-  simulate(model_engine(), Bus::kPortA, [](Initiator& i) {
+  simulate_board(model_engine(), Bus::kPortA, [](Initiator& i) {
     EXPECT_EQ(i.send(i.payload(kRead, 0)), tlm::TLM_ADDRESS_ERROR_RESPONSE) << "main memory is not on this bus";
     EXPECT_EQ(i.send(i.payload(kRead, 8 * 0x64000u)), tlm::TLM_ADDRESS_ERROR_RESPONSE) << "behind the RAM";
     EXPECT_EQ(i.send(i.payload(kRead, 8 * 0xFFFFFBu)), tlm::TLM_ADDRESS_ERROR_RESPONSE) << "Y: no peripheral";
@@ -63,25 +61,25 @@ TEST(BoardSocketProtocol, PortAKnowsWholeWordsOfItsDevices) {
 TEST(BoardSocketProtocol, WaitStatesAndClockShapeTheCycles) {
   BRICK_COVERS("CARD-1");
   for (const Engine& engine : {model_engine(), rtl_engine()})
-    simulate(engine, Bus::kPortA, [](Initiator& i) {
+    simulate_board(engine, Bus::kPortA, [](Initiator& i) {
       EXPECT_EQ(i.read(kBcr) & 0x3FF, 0x3FFu) << "after a reset the wait states are the most";
       i.write(kBcr, 9 << 5);  // AA1; with more than seven a cycle has three clocks more (host-bus:2.2)
       sc_core::wait(sc_core::sc_time(2'000'001, sc_core::SC_PS) - sc_core::sc_time_stamp());
-      i.write(kClockControl, 0x3008D2);
+      i.write(kBoardClockControl, 0x3008D2);
       EXPECT_EQ(now(), 2'161'662u) << "158 is the first; 158 + 12 at 2161661.8";
-      EXPECT_EQ(i.read(kClockControl), 0x3008D2u);
+      EXPECT_EQ(i.read(kBoardClockControl), 0x3008D2u);
       EXPECT_EQ(now(), 2'326'966u) << "the first clock after the call is 171; 171 + 12 at 2326965.3";
       i.write(kPctl, 11);  // x 12 / 12: a cycle is a tick, from the first edge after the write's own cycle on
-      i.read(kClockControl);
+      i.read(kBoardClockControl);
       const std::uint64_t end = now();
-      i.read(kClockControl);
+      i.read(kBoardClockControl);
       EXPECT_NEAR(static_cast<double>(now() - end), 13 * 78'125'000.0 / 9216, 1) << "thirteen ticks";
     });
 }
 
 TEST(BoardSocketProtocol, TheDelayIsWaitedForFirst) {
   BRICK_COVERS("CARD-1");
-  simulate(rtl_engine(), Bus::kIo, [](Initiator& i) {
+  simulate_board(rtl_engine(), Bus::kIo, [](Initiator& i) {
     sc_core::sc_time delay(1, sc_core::SC_US);
     EXPECT_EQ(i.send(i.payload(kRead, kHostIo, 1), delay), tlm::TLM_OK_RESPONSE);
     EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
@@ -94,7 +92,7 @@ TEST(BoardSocketProtocol, TheDelayIsWaitedForFirst) {
 TEST(BoardSocketProtocol, IsaSplitsAnAccessIntoCycles) {
   BRICK_COVERS("CARD-1");
   for (const Engine& engine : {model_engine(), rtl_engine()})
-    simulate(engine, Bus::kMemory, [](Initiator& i) {
+    simulate_board(engine, Bus::kMemory, [](Initiator& i) {
       unsigned char data[7] = {0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77};
       const auto access = [&](tlm::tlm_command command, std::uint64_t address, unsigned length) {
         auto p = i.payload(command, address, length);
@@ -136,7 +134,7 @@ TEST(BoardSocketProtocol, CyclesOfBothIsaSocketsQueue) {
       EXPECT_EQ(i.send(i.payload(kRead, address, 1)), tlm::TLM_OK_RESPONSE);
       ends.push_back(now());
     };
-    Bench bench(rtl_engine(), Bus::kIo, [&](Initiator& i) { read(i, kHostIo); });
+    BoardBench bench(rtl_engine(), Bus::kIo, [&](Initiator& i) { read(i, kHostIo); });
     Initiator other("other", [&](Initiator& i) { read(i, kWindow); });
     bench.bind(other, Bus::kMemory);
     sc_core::sc_start(10, sc_core::SC_US);
@@ -148,13 +146,13 @@ TEST(BoardSocketProtocol, DebugTransportReadsWhatHasNoSideEffect) {
   BRICK_COVERS("CARD-1");
   for (const Engine& engine : {model_engine(), rtl_engine(), lockstep_engine()})
     in_own_process([&] {
-      Bench bench(engine, Bus::kPortA, [](Initiator& i) {
+      BoardBench bench(engine, Bus::kPortA, [](Initiator& i) {
         sc_core::wait(100, sc_core::SC_NS);  // from power-on until the board works
         i.write(kRam + 4, 0xABCD);
         EXPECT_EQ(i.debug_read(kRam + 4), 0xABCDu);
         const std::uint64_t before = now();
         EXPECT_EQ(i.debug_read(kPctl), 7u) << "after a reset";
-        EXPECT_EQ(i.socket->transport_dbg(*i.payload(kRead, kClockControl)), 0u) << "a register of a device";
+        EXPECT_EQ(i.socket->transport_dbg(*i.payload(kRead, kBoardClockControl)), 0u) << "a register of a device";
         EXPECT_EQ(i.socket->transport_dbg(*i.payload(kRead, kRam, 2)), 0u);
         EXPECT_EQ(i.socket->transport_dbg(*i.payload(kWrite, kRam)), 0u) << "writes nothing";
         EXPECT_EQ(now(), before);
@@ -178,18 +176,18 @@ TEST(BoardSocketProtocol, AResetBreaksACycleOff) {
   for (const Engine& engine : {model_engine(), rtl_engine()})
     in_own_process([&] {
       sc_core::sc_signal<bool> rst_n{"rst_n", true};
-      Bench bench(engine, Bus::kPortA, [&rst_n](Initiator& i) {
+      BoardBench bench(engine, Bus::kPortA, [&rst_n](Initiator& i) {
         sc_core::sc_spawn([&rst_n] {
           sc_core::wait(100, sc_core::SC_NS);
           rst_n = false;
           sc_core::wait(1, sc_core::SC_US);
           rst_n = true;
         });
-        EXPECT_EQ(i.send(i.payload(kRead, kClockControl)), tlm::TLM_GENERIC_ERROR_RESPONSE);
+        EXPECT_EQ(i.send(i.payload(kRead, kBoardClockControl)), tlm::TLM_GENERIC_ERROR_RESPONSE);
         EXPECT_EQ(now(), 100'000u) << "at once";
-        EXPECT_EQ(i.send(i.payload(kRead, kClockControl)), tlm::TLM_GENERIC_ERROR_RESPONSE) << "still low";
+        EXPECT_EQ(i.send(i.payload(kRead, kBoardClockControl)), tlm::TLM_GENERIC_ERROR_RESPONSE) << "still low";
         sc_core::wait(2, sc_core::SC_US);
-        EXPECT_EQ(i.read(kClockControl), 0x3038D2u) << "as a reset leaves it";
+        EXPECT_EQ(i.read(kBoardClockControl), 0x3038D2u) << "as a reset leaves it";
       });
       bench.board.rst_n(rst_n);
       sc_core::sc_start(10, sc_core::SC_US);
@@ -202,7 +200,7 @@ TEST(BoardSocketProtocol, AKilledProcessLeavesItsCycleToTheBus) {
   for (const Engine& engine : {model_engine(), rtl_engine()})
     in_own_process([&] {
       std::uint64_t end = 0;
-      Bench bench(engine, Bus::kIo, [&end](Initiator& i) {
+      BoardBench bench(engine, Bus::kIo, [&end](Initiator& i) {
         auto killed = sc_core::sc_spawn([&i] { i.send(i.payload(kWrite, kHostIo + 10, 1)); });
         sc_core::wait(300, sc_core::SC_NS);  // the command is low
         i.data = 0x5A;
@@ -223,7 +221,7 @@ TEST(BoardSocketProtocol, ABusHasOneMaster) {
     in_own_process([&] {
       std::string type;
       sc_core::sc_signal<bool> line{"line", true};
-      Bench bench(model_engine(), bus, [](Initiator&) {});
+      BoardBench bench(model_engine(), bus, [](Initiator&) {});
       bind(bench.board, line);
       try {
         sc_core::sc_start(1, sc_core::SC_NS);
@@ -237,10 +235,10 @@ TEST(BoardSocketProtocol, ABusHasOneMaster) {
   elaborate(Bus::kPortA, [](Board& board, sc_core::sc_signal<bool>& line) { board.pa_rd_n(line); });
   elaborate(Bus::kIo, [](Board& board, sc_core::sc_signal<bool>& line) { board.isa_memr_n(line); });
   elaborate(Bus::kMemory, [](Board& board, sc_core::sc_signal<bool>& line) { board.isa_aen(line); });
-  simulate(model_engine(), Bus::kMemory, [](Initiator&) {});
+  simulate_board(model_engine(), Bus::kMemory, [](Initiator&) {});
   in_own_process([] {  // the other bus, and what is no line of a cycle, may be driven by pins
     sc_core::sc_signal<bool> rd_n{"rd_n", true}, resetdrv{"resetdrv"};
-    Bench bench(model_engine(), Bus::kIo, [](Initiator&) {});
+    BoardBench bench(model_engine(), Bus::kIo, [](Initiator&) {});
     bench.board.pa_rd_n(rd_n);
     bench.board.isa_resetdrv(resetdrv);
     sc_core::sc_start(1, sc_core::SC_NS);

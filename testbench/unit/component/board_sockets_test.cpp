@@ -7,6 +7,7 @@
 
 #include "systemc/board/model_board.h"
 #include "testbench/unit/component/bus_traffic.h"
+#include "testbench/unit/component/engines.h"
 #include "testbench/unit/component/initiator.h"
 #include "testbench/unit/component/own_process.h"
 #include "testbench/unit/component/rig.h"
@@ -15,8 +16,7 @@
 namespace brick::component {
 namespace {
 
-constexpr std::uint32_t kFitted = 0x3;
-constexpr Tick kTicks = 1'000'000;
+constexpr std::uint32_t kSmallBoard = 0x3;
 
 // A process that makes the accesses of one bus; its own time runs ahead of the kernel's by the quantum at most.
 class BusUser : public sc_core::sc_module {
@@ -71,7 +71,7 @@ class BusUser : public sc_core::sc_module {
 // Pins that traffic moves, and all outputs of the buses and connectors.
 bool bound_pin(const std::string& pin) {
   static const std::vector<std::string> kInputs{"rst_n", "mi1", "mi2", "axexp0", "axexp1"};
-  for (const PinInfo& info : Board::pin_table(kFitted))
+  for (const PinInfo& info : Board::pin_table(kSmallBoard))
     if (info.name == pin)
       return info.direction == PinDirection::kOut ? info.word < kBoardOutputWords
                                                   : std::find(kInputs.begin(), kInputs.end(), pin) != kInputs.end();
@@ -89,7 +89,7 @@ std::string differences(const Engine& engine, const BusTraffic& buses, const Bus
   Traffic pins;
   pins.pins = buses.pins;
   TimeBase time("time");
-  Board board("board", time, {kFitted, 0}, engine);
+  Board board("board", time, {kSmallBoard, 0}, engine);
   Rig rig("rig", board, pins, 0, quantum, binds);
   BusUser cpu("cpu", buses.port_a, quantum), host("host", buses.isa, quantum);
   cpu.port_a.bind(board.port_a);
@@ -116,17 +116,17 @@ struct Expected {
   BusTraffic traffic;
   BusSeen seen;
 };
-const Expected& expected() {
+const Expected& expected_of_the_board() {
   static const Expected all = [] {
     Expected e{bus_traffic(21, kTicks), {}};
-    e.seen = run(*make_model_board(kFitted), kFitted, e.traffic);
+    e.seen = run(*make_model_board(kSmallBoard), kSmallBoard, e.traffic);
     return e;
   }();
   return all;
 }
 
 TEST(BoardSockets, TrafficReachesEverything) {
-  const BusSeen& seen = expected().seen;
+  const BusSeen& seen = expected_of_the_board().seen;
   EXPECT_GE(seen.reads, 3'000u);
   EXPECT_GE(seen.writes, 3'000u);
   EXPECT_GE(moves(seen, "busy_host", 1), 50u) << "the host waits for a word of the RAM";
@@ -145,14 +145,11 @@ TEST(BoardSockets, TrafficReachesEverything) {
 }
 
 class BoardSocketsOn : public ::testing::TestWithParam<std::tuple<const char*, unsigned>> {};
-Engine engine_of(const std::string& name) {
-  return name == "model" ? model_engine() : name == "rtl" ? rtl_engine() : lockstep_engine();
-}
 TEST_P(BoardSocketsOn, AgreeWithTheBoardAndItsMasters) {
   BRICK_COVERS("CARD-1 CARD-2");
   const auto& [engine, quantum] = GetParam();
-  const Expected& e = expected();
-  in_own_process([&, engine = engine_of(engine), us = quantum] {
+  const Expected& e = expected_of_the_board();
+  in_own_process([&, engine = engine_named(engine), us = quantum] {
     EXPECT_EQ(differences(engine, e.traffic, e.seen, us, bound_pin), "");
   });
 }
@@ -162,16 +159,16 @@ INSTANTIATE_TEST_SUITE_P(All, BoardSocketsOn,
 
 TEST(BoardSockets, UnboundPinsChangeNothing) {
   BRICK_COVERS("CARD-1");
-  const Expected& e = expected();
+  const Expected& e = expected_of_the_board();
   for (const char* engine : {"model", "rtl"})
     for (const Binds& binds : {Binds(few_pins), Binds(no_outputs)})
-      in_own_process([&] { EXPECT_EQ(differences(engine_of(engine), e.traffic, e.seen, 3, binds), ""); });
+      in_own_process([&] { EXPECT_EQ(differences(engine_named(engine), e.traffic, e.seen, 3, binds), ""); });
 }
 
 TEST(BoardSockets, AStrobeThatIsLateByATickIsFound) {
-  const Expected& e = expected();
+  const Expected& e = expected_of_the_board();
   for (const BusFault fault : {BusFault::kLateStrobe, BusFault::kLateAddress}) {
-    const BusSeen wrong = run(*make_model_board(kFitted), kFitted, e.traffic, fault);
+    const BusSeen wrong = run(*make_model_board(kSmallBoard), kSmallBoard, e.traffic, fault);
     in_own_process(
         [&] { EXPECT_NE(differences(model_engine(), e.traffic, wrong, 0, bound_pin), "") << static_cast<int>(fault); });
   }

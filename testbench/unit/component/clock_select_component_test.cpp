@@ -10,8 +10,6 @@
 namespace brick::component {
 namespace {
 
-constexpr Tick kTicks = 1'000'000;
-
 class ClockSelectBlock final : public Block {
  public:
   ClockSelectBlock() : select_("block") { select_.reset(0); }
@@ -68,7 +66,7 @@ class ClockSelectBlock final : public Block {
 };
 
 // A source, often a second one that disagrees now and then, seldom none or clocks from outside.
-Traffic traffic_of(std::uint32_t seed) {
+Traffic clock_select_traffic(std::uint32_t seed) {
   Traffic traffic;
   traffic.end = edge_time(kTicks);
   std::mt19937 random(seed);
@@ -113,7 +111,7 @@ Traffic traffic_of(std::uint32_t seed) {
 TEST(ClockSelectComponent, AgreesWithTheBlock) {
   BRICK_COVERS("CARD-1 CARD-2");
   on_each_engine([](const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed) {
-    const Traffic traffic = traffic_of(seed);
+    const Traffic traffic = clock_select_traffic(seed);
     ClockSelectBlock block;
     const Seen expected = run(block, traffic);
     counts(expected, {"phase", "servo", "phase_source", "conflict"}, 200);

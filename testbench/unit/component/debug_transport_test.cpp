@@ -4,21 +4,21 @@
 #include <brick/rtl.h>
 #include <brick/servo_ic.h>
 
+#include "testbench/unit/component/engines.h"
 #include "testbench/unit/component/initiator.h"
 #include "testbench/unit/component/own_process.h"
+#include "testbench/unit/component/servo_ic_block.h"
 #include "testbench/unit/covers.h"
 
 namespace brick::component {
 namespace {
 
-constexpr std::uint64_t kStatus = 4, kCaptured = 28, kClockControl = 36, kControl = 44;  // X of offset 0, 3, 4, 5
-constexpr std::uint32_t kCapt = 1u << 11;                                                // servo-ic:2.2
+constexpr std::uint64_t kStatus = 4, kCaptured = 28, kControl = 44;  // X of offset 0, 3, 5
+constexpr std::uint32_t kCapt = 1u << 11;                            // servo-ic:2.2
 
-Engine engine_of(bool rtl) { return rtl ? rtl_engine() : model_engine(); }
-
-struct Bench {
-  Bench(bool rtl, std::function<void(Initiator&)> program)
-      : ic("ic", time, engine_of(rtl)), initiator("initiator", std::move(program)) {
+struct DebugBench {
+  DebugBench(bool rtl, std::function<void(Initiator&)> program)
+      : ic("ic", time, model_or_rtl(rtl)), initiator("initiator", std::move(program)) {
     initiator.socket.bind(ic.registers);
     ic.ch[0].hmfl(hmfl);
     ic.ch[0].aena(aena);
@@ -29,9 +29,9 @@ struct Bench {
   Initiator initiator;
 };
 
-void simulate(bool rtl, const std::function<void(Initiator&, Bench&)>& program) {
-  Bench* self = nullptr;
-  Bench bench(rtl, [&](Initiator& i) { program(i, *self); });
+void simulate_ic(bool rtl, const std::function<void(Initiator&, DebugBench&)>& program) {
+  DebugBench* self = nullptr;
+  DebugBench bench(rtl, [&](Initiator& i) { program(i, *self); });
   self = &bench;
   sc_core::sc_start(200, sc_core::SC_US);
   EXPECT_TRUE(bench.initiator.ended);
@@ -41,7 +41,7 @@ TEST(DebugTransport, ReadsAndWritesNothing) {
   BRICK_COVERS("CARD-1");
   for (const bool rtl : {false, true})
     in_own_process([rtl] {
-      simulate(rtl, [](Initiator& i, Bench&) {
+      simulate_ic(rtl, [](Initiator& i, DebugBench&) {
         EXPECT_EQ(i.debug_read(kClockControl), 0x3038D2u);
         i.data = 0;
         EXPECT_EQ(i.socket->transport_dbg(*i.payload(tlm::TLM_WRITE_COMMAND, kClockControl)), 0u);
@@ -57,7 +57,7 @@ TEST(DebugTransport, ReadsAndWritesNothing) {
 using Read = std::function<void(Initiator&)>;
 std::uint32_t capt_after(bool rtl, const Read& read) {
   std::uint32_t capt = 0;
-  simulate(rtl, [&](Initiator& i, Bench& bench) {
+  simulate_ic(rtl, [&](Initiator& i, DebugBench& bench) {
     i.write(kControl, 2 << 4);  // captures at HMFL
     sc_core::wait(1, sc_core::SC_US);
     bench.hmfl = true;
@@ -86,7 +86,7 @@ TEST(DebugTransport, LeavesACaptureAlone) {
 TEST(DebugTransport, LooksAtCommandAddressAndLengthAlone) {
   BRICK_COVERS("CARD-1");
   in_own_process([] {
-    simulate(false, [](Initiator& i, Bench&) {
+    simulate_ic(false, [](Initiator& i, DebugBench&) {
       tlm::tlm_generic_payload plain;  // of its streaming width nothing was said
       plain.set_read();
       plain.set_address(kClockControl);
@@ -104,7 +104,7 @@ TEST(DebugTransport, LooksAtCommandAddressAndLengthAlone) {
 
 // What sc_main() reads between two calls of sc_start(), where the RTL may have run ahead to the next microsecond.
 std::string debug_read_at(bool rtl, double ns) {
-  Bench bench(rtl, [](Initiator&) {});
+  DebugBench bench(rtl, [](Initiator&) {});
   sc_core::sc_start(ns, sc_core::SC_NS);
   try {
     EXPECT_EQ(bench.initiator.debug_read(kClockControl), 0x3038D2u);

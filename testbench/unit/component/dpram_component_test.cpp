@@ -10,8 +10,6 @@
 namespace brick::component {
 namespace {
 
-constexpr Tick kTicks = 1'000'000;
-
 std::size_t rises(const Seen& seen, const std::string& pin) {
   std::size_t count = 0;
   for (const Change& c : seen.changes) count += std::get<1>(c) == pin && std::get<2>(c) == 1 ? 1 : 0;

@@ -18,11 +18,9 @@ namespace {
 
 using sc_core::sc_time;
 using Program = std::function<void(Initiator&)>;
-constexpr auto kRead = tlm::TLM_READ_COMMAND;
-constexpr auto kWrite = tlm::TLM_WRITE_COMMAND;
 
-struct Bench {
-  Bench(const Engine& engine, const Program& on_host, const Program& on_cpu)
+struct DpramBench {
+  DpramBench(const Engine& engine, const Program& on_host, const Program& on_cpu)
       : ram("ram", time, {}, engine), host("host", on_host), cpu("cpu", on_cpu) {
     host.socket.bind(ram.host);
     cpu.socket.bind(ram.cpu);
@@ -36,9 +34,9 @@ struct Bench {
   sc_core::sc_signal<bool> small{"small"}, busy_host{"busy_host"}, busy_cpu{"busy_cpu"};
 };
 
-void simulate(
+void simulate_dpram(
     const Engine& engine, const Program& host, const Program& cpu = [](Initiator&) {}) {
-  Bench bench(engine, host, cpu);
+  DpramBench bench(engine, host, cpu);
   sc_core::sc_start(20, sc_core::SC_US);
   EXPECT_TRUE(bench.host.ended);
   EXPECT_TRUE(bench.cpu.ended);
@@ -70,7 +68,7 @@ Tick tick() {  // of the edge in whose instant we are
 TEST(DpramSocket, TakesBytesInAnyNumberAtAnyAddress) {
   BRICK_COVERS("CARD-1");
   on_engines([](const Engine& engine) {
-    simulate(engine, [](Initiator& i) {
+    simulate_dpram(engine, [](Initiator& i) {
       set_word(i, 0x100, 0x2211);
       set_word(i, 0x102, 0x4433);
       const auto bytes = [&i](unsigned address, unsigned length) {
@@ -94,7 +92,7 @@ TEST(DpramSocket, TakesBytesInAnyNumberAtAnyAddress) {
 TEST(DpramSocket, EachWordIsACycleOfItsOwn) {
   BRICK_COVERS("CARD-1");
   on_engines([](const Engine& engine) {
-    simulate(engine, [](Initiator& i) {
+    simulate_dpram(engine, [](Initiator& i) {
       std::array<unsigned char, 40> data;
       std::iota(data.begin(), data.end(), static_cast<unsigned char>(1));
       std::array<unsigned char, 4> enables{TLM_BYTE_ENABLED, TLM_BYTE_ENABLED, TLM_BYTE_DISABLED, TLM_BYTE_DISABLED};
@@ -129,7 +127,7 @@ TEST(DpramSocket, EachWordIsACycleOfItsOwn) {
 TEST(DpramSocket, CpuCyclesCountEdgesOfClkPwm) {
   BRICK_COVERS("CARD-1");
   on_engines([](const Engine& engine) {
-    simulate(
+    simulate_dpram(
         engine, [](Initiator&) {},
         [](Initiator& i) {
           set_word(i, 6, 0xBEEF);  // X:$060001
@@ -150,7 +148,7 @@ TEST(DpramSocket, CpuCyclesCountEdgesOfClkPwm) {
 TEST(DpramSocket, BadPayloadsGetErrorResponsesAtOnce) {
   BRICK_COVERS("CARD-1");
   in_own_process([] {
-    simulate(
+    simulate_dpram(
         model_engine(),
         [](Initiator& i) {
           EXPECT_EQ(i.send(i.payload(kRead, 0x10000, 1)), tlm::TLM_ADDRESS_ERROR_RESPONSE);
@@ -189,8 +187,8 @@ TEST(DpramSocket, BadPayloadsGetErrorResponsesAtOnce) {
 TEST(DpramSocket, DebugReadsTheContent) {
   BRICK_COVERS("CARD-1");
   on_engines([](const Engine& engine) {
-    Bench* self = nullptr;
-    Bench bench(
+    DpramBench* self = nullptr;
+    DpramBench bench(
         engine,
         [&self](Initiator& i) {
           set_word(i, 0xFFFE, 0xCAFE);
@@ -227,8 +225,8 @@ TEST(DpramSocket, DebugReadsTheContent) {
 TEST(DpramSocket, TheLaterOneWaitsAndADebugReadDisturbsNobody) {
   BRICK_COVERS("CARD-1");
   on_engines([](const Engine& engine) {
-    Bench* self = nullptr;
-    Bench bench(
+    DpramBench* self = nullptr;
+    DpramBench bench(
         engine,
         [](Initiator& i) {
           sc_core::wait(sc_time::from_value(edge_time(118)));
@@ -271,7 +269,7 @@ TEST(DpramSocket, TheLaterOneWaitsAndADebugReadDisturbsNobody) {
 TEST(DpramSocket, TheAccessAfterAKilledOneIsWhole) {
   BRICK_COVERS("CARD-1");
   on_engines([](const Engine& engine) {
-    simulate(
+    simulate_dpram(
         engine, [](Initiator&) {},
         [](Initiator& i) {
           set_word(i, 0x10, 0x1111);
@@ -299,8 +297,8 @@ TEST(DpramSocket, TheAccessAfterAKilledOneIsWhole) {
 TEST(DpramSocket, AKilledInitiatorThatWaitsLeavesNothing) {
   BRICK_COVERS("CARD-1");
   on_engines([](const Engine& engine) {
-    Bench* self = nullptr;
-    Bench bench(
+    DpramBench* self = nullptr;
+    DpramBench bench(
         engine,
         [&self](Initiator& i) {
           sc_core::wait(sc_time::from_value(edge_time(118)));
@@ -337,7 +335,7 @@ TEST(DpramSocket, AKilledInitiatorThatWaitsLeavesNothing) {
 TEST(DpramSocket, AccessesOfOneSideTakeTurns) {
   BRICK_COVERS("CARD-1");
   on_engines([](const Engine& engine) {
-    simulate(engine, [](Initiator& i) {
+    simulate_dpram(engine, [](Initiator& i) {
       std::vector<Tick> ends;
       const auto write = [&i, &ends](unsigned address) {
         std::uint32_t data = address;

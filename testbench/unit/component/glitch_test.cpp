@@ -5,8 +5,10 @@
 #include <brick/rtl.h>
 #include <brick/servo_ic.h>
 
+#include "testbench/unit/component/engines.h"
 #include "testbench/unit/component/initiator.h"
 #include "testbench/unit/component/own_process.h"
+#include "testbench/unit/component/servo_ic_block.h"
 #include "testbench/unit/covers.h"
 
 namespace brick::component {
@@ -15,12 +17,7 @@ namespace {
 using sc_core::SC_NS;
 using sc_core::SC_US;
 
-constexpr std::uint64_t kClockControl = 4 * 9;  // X of offset 4
 constexpr std::uint32_t kAfterReset = 0x3038D2, kWritten = 0x3008D2;
-
-Engine engine_of(const std::string& name) {
-  return name == "model" ? model_engine() : name == "rtl" ? rtl_engine() : lockstep_engine();
-}
 
 // Low for some delta cycles of one instant, then high again; 0: low until the next tick at least.
 void pulse(sc_core::sc_signal<bool>& line, unsigned deltas) {
@@ -101,8 +98,8 @@ class Glitch : public testing::TestWithParam<const char*> {};
 TEST_P(Glitch, OfTheResetIsNone) {
   BRICK_COVERS("CARD-1 CARD-2");
   for (const unsigned deltas : {1u, 2u, 3u})
-    in_own_process([&] { EXPECT_EQ(after_reset_pulse(engine_of(GetParam()), deltas), kWritten) << deltas; });
-  in_own_process([] { EXPECT_EQ(after_reset_pulse(engine_of(GetParam()), 0), kAfterReset) << "a real one"; });
+    in_own_process([&] { EXPECT_EQ(after_reset_pulse(engine_named(GetParam()), deltas), kWritten) << deltas; });
+  in_own_process([] { EXPECT_EQ(after_reset_pulse(engine_named(GetParam()), 0), kAfterReset) << "a real one"; });
 }
 
 TEST_P(Glitch, OfAStrobeIsNone) {
@@ -110,7 +107,7 @@ TEST_P(Glitch, OfAStrobeIsNone) {
   for (const unsigned deltas : {0u, 1u, 2u, 3u})
     in_own_process([deltas] {
       TimeBase time("time");
-      Board board("board", time, {}, engine_of(GetParam()));
+      Board board("board", time, {}, engine_named(GetParam()));
       Cpu cpu("cpu", board, deltas);
       sc_core::sc_start(5, SC_US);
       EXPECT_EQ(cpu.before, kAfterReset);

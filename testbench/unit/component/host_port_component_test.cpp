@@ -12,7 +12,6 @@
 namespace brick::component {
 namespace {
 
-constexpr Tick kTicks = 1'000'000;
 constexpr unsigned kHost = 0;
 
 // All accesses are one edge of clk_ref, but reads of the host, which act with a second.
@@ -85,7 +84,7 @@ class HostPortSides final : public Sides {
   unsigned shown_ = 0;
 };
 
-Traffic traffic_of(std::uint32_t seed) {
+Traffic host_port_traffic(std::uint32_t seed) {
   Traffic traffic;
   traffic.end = edge_time(kTicks);
   std::mt19937 random(seed);
@@ -114,7 +113,7 @@ Traffic traffic_of(std::uint32_t seed) {
 TEST(HostPortComponent, AgreesWithTheBlockOnBothSidesAtOnce) {
   BRICK_COVERS("CARD-1 CARD-2");
   on_each_engine([](const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed) {
-    const Traffic traffic = traffic_of(seed);
+    const Traffic traffic = host_port_traffic(seed);
     HostPortSides block;
     const Seen expected = run(block, traffic);
     EXPECT_GE(expected.answers.size(), 30'000u);
@@ -146,8 +145,6 @@ void with_host_port(const Engine& engine, const std::function<void(Initiator&)>&
   EXPECT_TRUE(two.ended);
 }
 
-constexpr auto kRead = tlm::TLM_READ_COMMAND;
-constexpr auto kWrite = tlm::TLM_WRITE_COMMAND;
 std::uint32_t host_read(Initiator& i, unsigned address) {
   i.data = 0;
   EXPECT_EQ(i.send(i.payload(kRead, address, 1)), tlm::TLM_OK_RESPONSE);

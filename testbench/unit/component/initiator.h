@@ -11,6 +11,9 @@
 
 namespace brick::component {
 
+constexpr auto kRead = tlm::TLM_READ_COMMAND;
+constexpr auto kWrite = tlm::TLM_WRITE_COMMAND;
+
 // A process of the test with a socket.
 class Initiator : public sc_core::sc_module {
  public:

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <thread>
 
+#include "testbench/unit/component/engines.h"
 #include "testbench/unit/component/initiator.h"
 #include "testbench/unit/component/own_process.h"
 #include "testbench/unit/covers.h"
@@ -20,11 +21,9 @@ using sc_core::SC_NS;
 using sc_core::SC_US;
 using sc_core::SC_ZERO_TIME;
 
-Engine engine_of(bool rtl) { return rtl ? rtl_engine() : model_engine(); }
-
 // A reset of the controller shows at once in what a debug read gives; IRQ is bound, so that the RTL runs ahead.
-struct Bench {
-  explicit Bench(bool rtl) : pic("pic", time, engine_of(rtl)) {
+struct PicBench {
+  explicit PicBench(bool rtl) : pic("pic", time, model_or_rtl(rtl)) {
     pic.ir[0](line);
     pic.irq(irq);
   }
@@ -34,16 +33,9 @@ struct Bench {
   sc_core::sc_signal<bool> irq{"irq"};
 };
 
-std::string error_of(const std::function<void()>& run) {
-  try {
-    run();
-  } catch (const sc_core::sc_report& report) { return report.get_msg_type(); }
-  return "";
-}
-
 // An input changes, and a process goes on for some delta cycles.
 std::string goes_on(bool rtl, unsigned deltas) {
-  Bench bench(rtl);
+  PicBench bench(rtl);
   sc_core::sc_spawn([&] {
     sc_core::wait(100, SC_NS);
     bench.line = true;
@@ -54,7 +46,7 @@ std::string goes_on(bool rtl, unsigned deltas) {
 
 // The line turns over in each delta cycle.
 std::string goes_round(bool rtl, unsigned turns) {
-  Bench bench(rtl);
+  PicBench bench(rtl);
   sc_core::sc_spawn_options circle;
   circle.spawn_method();
   circle.dont_initialize();
@@ -86,7 +78,7 @@ struct Polled {
 enum class Asks { kNobody, kThread, kMethod };
 
 Polled polled(bool rtl, Asks who, bool line_after) {
-  Bench bench(rtl);
+  PicBench bench(rtl);
   Polled seen;
   Initiator initiator("initiator", [&](Initiator& i) {
     const auto read = [&i] { EXPECT_EQ(i.send(i.payload(tlm::TLM_READ_COMMAND, 1, 1)), tlm::TLM_OK_RESPONSE); };
@@ -144,7 +136,7 @@ TEST(Instant, EndsForAProcessThatAsksForItToo) {
 
 // sc_main() changes a pin and settles it by delta cycles, twice in one instant.
 std::string two_changes(bool rtl, unsigned deltas_between) {
-  Bench bench(rtl);
+  PicBench bench(rtl);
   sc_core::sc_start(1, SC_US);
   return error_of([&] {
     bench.line = true;
@@ -201,7 +193,7 @@ class OtherThread : public sc_core::sc_prim_channel {
 
 // Changes of the line that a component has seen without an error.
 unsigned asynchronous(bool rtl, bool sampled, unsigned updates = 300) {
-  Bench bench(rtl);
+  PicBench bench(rtl);
   sc_core::sc_signal<bool, sc_core::SC_UNCHECKED_WRITERS> raw("raw");
   OtherThread other(sampled ? raw : bench.line);
   unsigned changes = 0;

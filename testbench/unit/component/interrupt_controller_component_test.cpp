@@ -13,8 +13,6 @@
 namespace brick::component {
 namespace {
 
-constexpr Tick kTicks = 1'000'000;
-
 class PicBlock final : public Block {
  public:
   PicBlock() : pic_("block"), line_("line") {
@@ -71,7 +69,7 @@ class PicBlock final : public Block {
   Tick now_ = 0;
 };
 
-Traffic traffic_of(std::uint32_t seed) {
+Traffic interrupt_traffic(std::uint32_t seed) {
   Traffic traffic;
   traffic.end = edge_time(kTicks);
   std::mt19937 random(seed);
@@ -102,7 +100,7 @@ TEST(InterruptControllerComponent, AgreesWithTheBlock) {
   BRICK_COVERS("CARD-1 CARD-2");
   on_each_engine([](const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed) {
     PicBlock block;
-    agrees<InterruptController>(block, traffic_of(seed), engine, quantum, 1, all, 8000, 1000);
+    agrees<InterruptController>(block, interrupt_traffic(seed), engine, quantum, 1, all, 8000, 1000);
   });
 }
 

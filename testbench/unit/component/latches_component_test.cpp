@@ -99,9 +99,9 @@ class WatchdogBlock final : public StrobedBlock<brick::Watchdog> {
   }
 };
 
-class Random {
+class Instants {
  public:
-  explicit Random(std::uint32_t seed) : random_(seed) {}
+  explicit Instants(std::uint32_t seed) : random_(seed) {}
   Picoseconds below(Picoseconds n) { return random_() % n; }
   // Up to `most` after `now`; one in four in the instant of an edge, or right before.
   Picoseconds after(Picoseconds now, Picoseconds most) {
@@ -113,7 +113,7 @@ class Random {
   std::mt19937_64 random_;
 };
 
-void pulse(Traffic& traffic, Picoseconds at, const std::string& pin, Picoseconds length) {
+void add_pulse(Traffic& traffic, Picoseconds at, const std::string& pin, Picoseconds length) {
   traffic.pins.push_back({at, pin, 0});
   traffic.pins.push_back({at + length, pin, 1});
 }
@@ -121,9 +121,9 @@ void pulse(Traffic& traffic, Picoseconds at, const std::string& pin, Picoseconds
 Traffic host_signals_traffic(std::uint32_t seed) {
   Traffic traffic;
   traffic.end = edge_time(1'000'000);
-  Random random(seed);
+  Instants random(seed);
   for (Picoseconds now = 0; now < traffic.end; now = traffic.pins.back().time)
-    pulse(traffic, random.after(now, 1'000'000'000), "rst_n", 1 + random.below(60'000));
+    add_pulse(traffic, random.after(now, 1'000'000'000), "rst_n", 1 + random.below(60'000));
   bool trip = false;
   for (Picoseconds at = random.after(0, 300'000'000); at < traffic.end; at = random.after(at, 300'000'000))
     traffic.pins.push_back({at, "trip", trip = !trip});
@@ -145,7 +145,7 @@ constexpr Trip kLives[] = {Trip::kStrobe, Trip::kServo, Trip::kPower, Trip::kStr
 
 Traffic watchdog_traffic(std::uint32_t seed) {
   Traffic traffic;
-  Random random(seed);
+  Instants random(seed);
   Picoseconds begun = 0, free = 0;  // the life; the last access ends about then
   bool servo = true;
   const auto accesses = [&](Picoseconds end, Picoseconds most, bool only_writes) {
@@ -160,7 +160,7 @@ Traffic watchdog_traffic(std::uint32_t seed) {
     const Picoseconds busy = begun + kMs, rest = trip == Trip::kPower ? kMs : 26 * kMs + random.below(2 * kMs);
     accesses(busy, 4 * kUs, false);
     turns(begun, busy, 100 * kUs);
-    if (trip == Trip::kPower) pulse(traffic, busy, "pwr_good", 200'000);
+    if (trip == Trip::kPower) add_pulse(traffic, busy, "pwr_good", 200'000);
     if (trip == Trip::kServo) accesses(busy + rest, 100 * kUs, true);
     if (trip == Trip::kStrobe) turns(busy, busy + rest, 5 * kMs);
     begun = busy + rest;
@@ -168,7 +168,7 @@ Traffic watchdog_traffic(std::uint32_t seed) {
       traffic.accesses.push_back({begun - free, true, 0, 0});
       free = begun;
     }
-    pulse(traffic, begun, "rst_n", 1 + random.below(60'000));
+    add_pulse(traffic, begun, "rst_n", 1 + random.below(60'000));
     begun += 100'000;
   }
   traffic.end = begun;

@@ -10,8 +10,6 @@
 namespace brick::component {
 namespace {
 
-constexpr Tick kTicks = 1'000'000;
-
 class MacroIcBlock final : public Block {
  public:
   MacroIcBlock() : ic_("block") { ic_.reset(0); }
@@ -56,7 +54,7 @@ class MacroIcBlock final : public Block {
 };
 
 // Short clocks, directions both ways, kinds and resets now and then; some accesses to every word.
-Traffic traffic_of(std::uint32_t seed) {
+Traffic macro_ic_traffic(std::uint32_t seed) {
   constexpr unsigned kClock = 8 * 0x0C + 4, kPwm = 8 * 0x0D + 4;  // X words (servo-ic:6.2)
   Traffic traffic;
   traffic.end = edge_time(kTicks);
@@ -89,7 +87,7 @@ TEST(MacroIcComponent, AgreesWithTheBlock) {
   BRICK_COVERS("CARD-1 CARD-2");
   on_each_engine([](const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed) {
     MacroIcBlock block;
-    agrees<MacroIc>(block, traffic_of(seed), engine, quantum, 4, all, 8000, 3000);
+    agrees<MacroIc>(block, macro_ic_traffic(seed), engine, quantum, 4, all, 8000, 3000);
   });
 }
 
@@ -98,7 +96,7 @@ TEST(MacroIcComponent, UnboundPinsAreIdle) {
   const Binds few = [](const std::string& pin) { return pin == "phase_o" || pin == "servo_i"; };
   on_each_engine([&few](const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed) {
     MacroIcBlock block;
-    Traffic traffic = traffic_of(100 + seed);
+    Traffic traffic = macro_ic_traffic(100 + seed);
     traffic.end = edge_time(kTicks / 5);
     agrees<MacroIc>(block, traffic, engine, quantum, 4, few, 1000, 300);
   });

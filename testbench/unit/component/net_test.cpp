@@ -13,14 +13,14 @@
 namespace brick::component {
 namespace {
 
-constexpr Tick kTicks = 150'000;
-constexpr unsigned kClockControl = 8 * 4 + 4, kPwmControl = 8 * 28 + 4;  // bytes of X:+$04, X:+$1C
-constexpr std::uint32_t kDrive = 0x0008D2, kFollow = 0x0038D2;           // servo-ic:2.6, both dividers 0
+constexpr Tick kNetTicks = 150'000;
+constexpr unsigned kPwmControl = 8 * 28 + 4;                    // byte of X:+$1C
+constexpr std::uint32_t kDrive = 0x0008D2, kFollow = 0x0038D2;  // servo-ic:2.6, both dividers 0
 
 // IC 0 drives, then IC 1 as well, then IC 0 lets go; each from its own initiator at its own times.
-Traffic traffic_of(unsigned ic) {
+Traffic net_traffic(unsigned ic) {
   Traffic traffic;
-  traffic.end = edge_time(kTicks);
+  traffic.end = edge_time(kNetTicks);
   traffic.accesses = {{1'000'000 + ic * 13'000, true, kPwmControl, 200u << 8 | 15}};
   if (ic == 0)
     traffic.accesses.insert(traffic.accesses.end(),
@@ -35,7 +35,7 @@ bool clocks(const std::string& pin) { return pin.rfind("phase_o", 0) == 0 || pin
 // Both blocks in turn, the net in between.
 std::array<Seen, 2> run_both() {
   std::array<Seen, 2> seen;
-  std::array<Traffic, 2> traffic{traffic_of(0), traffic_of(1)};
+  std::array<Traffic, 2> traffic{net_traffic(0), net_traffic(1)};
   std::array<ServoIcBlock, 2> block{ServoIcBlock("a"), ServoIcBlock("b")};
   std::array<std::map<std::string, std::uint32_t>, 2> shown{block[0].outputs(), block[1].outputs()};
   std::array<std::size_t, 2> next{};
@@ -45,7 +45,7 @@ std::array<Seen, 2> run_both() {
     return (edge_after(time) + kTicksPerRef - 1) / kTicksPerRef * kTicksPerRef;
   };
   for (unsigned i = 0; i < 2; ++i) at[i] = edge_of(traffic[i].accesses[0].idle);
-  for (Tick t = 1; t < kTicks; ++t) {
+  for (Tick t = 1; t < kNetTicks; ++t) {
     const auto net = [&shown](const char* pin) { return shown[0][pin] & shown[1][pin]; };
     if (const std::array<std::uint32_t, 2> now{net("phase_o"), net("servo_o")}; now != nets) {
       nets = now;
@@ -90,7 +90,7 @@ class Net : public sc_core::sc_module {
 void nets_agree(const Engine& first, const Engine& second) {
   const std::array<Seen, 2> expected = run_both();
   TimeBase time("time");
-  const std::array<Traffic, 2> traffic{traffic_of(0), traffic_of(1)};
+  const std::array<Traffic, 2> traffic{net_traffic(0), net_traffic(1)};
   ServoIc a("a", time, first), b("b", time, second);
   const sc_core::sc_time quantum;
   Rig rig_a("rig_a", a, traffic[0], 4, quantum, clocks), rig_b("rig_b", b, traffic[1], 4, quantum, clocks);
@@ -108,7 +108,7 @@ void nets_agree(const Engine& first, const Engine& second) {
   phase.pins[1](rig_b.signal("phase_o"));
   servo.pins[0](rig_a.signal("servo_o"));
   servo.pins[1](rig_b.signal("servo_o"));
-  sc_core::sc_start(sc_core::sc_time::from_value(edge_time(kTicks) - 1));
+  sc_core::sc_start(sc_core::sc_time::from_value(edge_time(kNetTicks) - 1));
   ASSERT_GT(expected[0].changes.size(), 300u);
   ASSERT_GT(expected[1].changes.size(), 100u);
   EXPECT_EQ(difference(rig_a.seen, expected[0], traffic[0].end, clocks), "");

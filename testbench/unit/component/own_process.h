@@ -7,8 +7,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <functional>
+#include <string>
 
 #include <gtest/gtest.h>
+#include <systemc>
 
 namespace brick::component {
 
@@ -37,6 +40,14 @@ void in_own_process(const Simulation& simulation) {
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
   EXPECT_EQ(WEXITSTATUS(status), 0) << "the simulation failed, see above";
+}
+
+// Type of the report that ends it, "" when none does.
+inline std::string error_of(const std::function<void()>& simulation) {
+  try {
+    simulation();
+  } catch (const sc_core::sc_report& report) { return report.get_msg_type(); }
+  return "";
 }
 
 }  // namespace brick::component

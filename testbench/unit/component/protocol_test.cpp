@@ -16,6 +16,7 @@
 #include "testbench/unit/component/initiator.h"
 #include "testbench/unit/component/own_process.h"
 #include "testbench/unit/component/rig.h"
+#include "testbench/unit/component/servo_ic_block.h"
 #include "testbench/unit/covers.h"
 
 namespace brick::component {
@@ -36,7 +37,6 @@ TEST(RegisterSocket, BadPayloadsGetErrorResponsesAtOnce) {
   BRICK_COVERS("CARD-1");
   in_own_process([] {
     with_servo_ic(model_engine(), [](Initiator& i) {
-      constexpr auto kRead = tlm::TLM_READ_COMMAND;
       EXPECT_EQ(i.send(i.payload(kRead, 256)), tlm::TLM_ADDRESS_ERROR_RESPONSE) << "beyond the last word";
       EXPECT_EQ(i.send(i.payload(kRead, 2)), tlm::TLM_ADDRESS_ERROR_RESPONSE) << "in the middle of one";
       EXPECT_EQ(i.send(i.payload(kRead, 4, 2)), tlm::TLM_BURST_ERROR_RESPONSE) << "half a register";
@@ -101,7 +101,6 @@ TEST(RegisterSocket, AKilledOrResetInitiatorLeavesItFree) {
   for (const bool rtl : {false, true})
     in_own_process([rtl] {
       with_servo_ic(rtl ? rtl_engine() : model_engine(), [](Initiator& i) {
-        constexpr std::uint64_t kClockControl = 36;
         const auto write = [&i] { return sc_core::sc_spawn([&i] { i.write(kClockControl, 0x3008D2); }); };
         sc_core::wait(1, sc_core::SC_US);  // the next edge of clk_ref is 120, at 1017.2 ns
         auto under_way = write(), waiting = write();
@@ -218,13 +217,6 @@ TEST(Time, NothingTicksWhenNothingHappens) {
     sc_core::sc_start(1, sc_core::SC_SEC);
     EXPECT_LT(sc_core::sc_delta_count() - before, 10u);
   });
-}
-
-std::string error_of(const std::function<void()>& program) {
-  try {
-    program();
-  } catch (const sc_core::sc_report& report) { return report.get_msg_type(); }
-  return "";
 }
 
 TEST(Time, AComponentMayGoAfterItsBaseButNotRun) {

@@ -32,7 +32,7 @@ sc_core::sc_process_handle spawn(const char* name, const std::function<void()>& 
   return sc_core::sc_spawn(program, name);
 }
 
-void with_servo_ic(const Engine& engine, const std::function<void(Initiator&, TimeBase&)>& program) {
+void with_servo_ic_and_time(const Engine& engine, const std::function<void(Initiator&, TimeBase&)>& program) {
   TimeBase time("time");
   ServoIc ic("ic", time, engine);
   Initiator initiator("initiator", [&](Initiator& i) { program(i, time); });
@@ -50,7 +50,7 @@ TEST(RegisterQueue, ProcessesOfOneInstantHaveTheOrderOfTheirNames) {
   for (const Split& d : {Split{0, 100}, Split{100, 0}, Split{60, 40}})
     for (const bool late_first : {false, true})
       in_own_process([&] {
-        with_servo_ic(model_engine(), [&](Initiator& i, TimeBase&) {
+        with_servo_ic_and_time(model_engine(), [&](Initiator& i, TimeBase&) {
           std::string order;
           std::vector<Picoseconds> times;
           const auto one = [&](const char* name, const Split& split) {
@@ -74,7 +74,7 @@ TEST(RegisterQueue, ProcessesOfOneInstantHaveTheOrderOfTheirNames) {
 TEST(RegisterQueue, WhoCameBeforeGoesFirstWhateverHisName) {
   BRICK_COVERS("CARD-1");
   in_own_process([] {
-    with_servo_ic(model_engine(), [](Initiator& i, TimeBase&) {
+    with_servo_ic_and_time(model_engine(), [](Initiator& i, TimeBase&) {
       std::string order;
       for (const auto& [name, delay] : {std::pair{"a", 100.003}, {"b", 100.002}, {"c", 100.001}})
         spawn(name, [&order, &i, n = name, d = delay] { access(i, true, 1, d), order += n; });
@@ -90,7 +90,7 @@ TEST(RegisterQueue, WhoIsKilledInTheInstantOfHisEdgeEndsNobodyElsesAccess) {
   for (const auto& engine : {model_engine(), rtl_engine(), lockstep_engine()})
     for (const bool write : {false, true})
       in_own_process([&] {
-        with_servo_ic(engine, [write](Initiator& i, TimeBase& time) {
+        with_servo_ic_and_time(engine, [write](Initiator& i, TimeBase& time) {
           auto killed = spawn("a", [&i] { access(i, true, 0x222222); });  // at edge 3
           std::uint32_t value = 0;
           Picoseconds end = 0;
@@ -112,7 +112,7 @@ TEST(RegisterQueue, WhoIsKilledInTheInstantOfHisEdgeEndsNobodyElsesAccess) {
 TEST(RegisterQueue, ADisabledProcessHoldsUpNobody) {
   BRICK_COVERS("CARD-1");
   in_own_process([] {
-    with_servo_ic(model_engine(), [](Initiator& i, TimeBase&) {
+    with_servo_ic_and_time(model_engine(), [](Initiator& i, TimeBase&) {
       bool a_ended = false, b_ended = false;
       auto a = spawn("a", [&] { access(i, true, 0x222222), a_ended = true; });
       spawn("b", [&] { access(i, true, 0x333333), b_ended = true; });
@@ -132,7 +132,7 @@ TEST(RegisterQueue, ADisabledProcessHoldsUpNobody) {
 TEST(RegisterQueue, PayloadsThatSayNothingAreErrors) {
   BRICK_COVERS("CARD-1");
   in_own_process([] {
-    with_servo_ic(model_engine(), [](Initiator& i, TimeBase&) {
+    with_servo_ic_and_time(model_engine(), [](Initiator& i, TimeBase&) {
       const auto empty = i.payload(tlm::TLM_READ_COMMAND, kOutA), odd = i.payload(tlm::TLM_READ_COMMAND, kOutA);
       empty->set_data_ptr(nullptr);
       EXPECT_EQ(i.send(empty), tlm::TLM_GENERIC_ERROR_RESPONSE);

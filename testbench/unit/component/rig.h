@@ -20,6 +20,8 @@
 
 namespace brick::component {
 
+constexpr Tick kTicks = 1'000'000;  // of most simulations
+
 using Binds = std::function<bool(const std::string&)>;
 inline bool all(const std::string&) { return true; }
 

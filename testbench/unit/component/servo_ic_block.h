@@ -6,6 +6,8 @@
 
 namespace brick::component {
 
+constexpr unsigned kClockControl = 8 * 4 + 4;  // byte of X:+$04 at the socket
+
 class ServoIcBlock final : public Block {
  public:
   explicit ServoIcBlock(const char* name = "block");

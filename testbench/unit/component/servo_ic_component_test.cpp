@@ -13,8 +13,6 @@
 namespace brick::component {
 namespace {
 
-constexpr Tick kTicks = 1'000'000;
-
 void servo_ic_agrees(const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed,
                      const Binds& binds = all, Tick ticks = kTicks) {
   ServoIcBlock block;

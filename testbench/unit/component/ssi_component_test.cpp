@@ -10,7 +10,7 @@
 namespace brick::component {
 namespace {
 
-constexpr Tick kTicks = 500'000;
+constexpr Tick kSsiTicks = 500'000;
 
 class SsiBlock final : public Block {
  public:
@@ -62,9 +62,9 @@ class SsiBlock final : public Block {
 
 // Frames at the fastest clocks one after the other, of whatever the data lines show; a reset now and then, with the
 // product's strap beside it.
-Traffic traffic_of(std::uint32_t seed) {
+Traffic ssi_traffic(std::uint32_t seed) {
   Traffic traffic;
-  traffic.end = edge_time(kTicks);
+  traffic.end = edge_time(kSsiTicks);
   std::mt19937 random(seed);
   const auto below = [&random](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
   std::map<std::string, std::uint32_t> level{{"rst_n", 1}, {"phase", 1}, {"servo", 1}};
@@ -101,7 +101,7 @@ TEST(SsiComponent, AgreesWithTheBlock) {
   BRICK_COVERS("SSI-1");
   on_each_engine([](const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed) {
     SsiBlock block;
-    agrees<Ssi>(block, traffic_of(seed), engine, quantum, 4, all, 4000, 1000);
+    agrees<Ssi>(block, ssi_traffic(seed), engine, quantum, 4, all, 4000, 1000);
   });
 }
 

@@ -15,9 +15,9 @@ namespace brick::component {
 namespace {
 
 using sc_core::sc_time;
-constexpr unsigned kPwmControl = 8 * 28 + 4, kClockControl = 8 * 4 + 4;  // bytes of X:+$1C, X:+$04
-constexpr std::uint32_t kPeriod = 200u << 8 | 15, kDrive = 0x0008D2;     // 403 ticks; PHASE and SERVO are outputs
-constexpr Tick kTicks = 60'000;                                          // the period before ends first, 13057 ticks
+constexpr unsigned kPwmControl = 8 * 28 + 4;                          // byte of X:+$1C
+constexpr std::uint32_t kPeriod = 200u << 8 | 15, kDrive = 0x0008D2;  // 403 ticks; PHASE and SERVO are outputs
+constexpr Tick kTimeBaseTicks = 60'000;                               // the period before ends first, 13057 ticks
 
 struct Kernel {
   std::uint64_t unit_fs, epoch;  // the epoch in units
@@ -32,11 +32,11 @@ struct Happened {
 };
 
 // The two writes are asked for at the epoch.
-Happened expected(const Kernel& kernel) {
+Happened expected_in(const Kernel& kernel) {
   Happened happened;
   ServoIcBlock block;
   bool phase = true;
-  for (Tick t = 1; t < kTicks; ++t) {
+  for (Tick t = 1; t < kTimeBaseTicks; ++t) {
     block.edge(t);
     if (t == 3) block.accessed({0, true, kPwmControl, kPeriod});
     if (t == 6) block.accessed({0, true, kClockControl, kDrive});
@@ -53,7 +53,7 @@ Happened expected(const Kernel& kernel) {
 void runs(const Engine& engine, std::uint64_t unit_fs, std::uint64_t epoch_ns) {
   sc_core::sc_set_time_resolution(static_cast<double>(unit_fs), sc_core::SC_FS);
   const Kernel kernel{unit_fs, epoch_ns * 1'000'000 / unit_fs};
-  const Happened right = expected(kernel);
+  const Happened right = expected_in(kernel);
   ASSERT_GT(right.phase.size(), 90u);
   TimeOptions options;
   options.epoch = sc_time::from_value(kernel.epoch);
@@ -75,7 +75,7 @@ void runs(const Engine& engine, std::uint64_t unit_fs, std::uint64_t epoch_ns) {
   process.dont_initialize();
   process.set_sensitivity(&phase.value_changed_event());
   sc_core::sc_spawn([&] { seen.phase.push_back(sc_core::sc_time_stamp().value()); }, "see", &process);
-  sc_core::sc_start(sc_time::from_value(kernel.instant(kTicks) - 1));
+  sc_core::sc_start(sc_time::from_value(kernel.instant(kTimeBaseTicks) - 1));
   EXPECT_EQ(seen.writes, right.writes);
   EXPECT_EQ(seen.phase, right.phase);
 }

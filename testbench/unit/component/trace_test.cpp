@@ -102,10 +102,10 @@ std::vector<Change> input_changes(const Traffic& traffic, const std::vector<PinI
 
 TEST(ComponentTrace, PinsMoveAsTheBlockSaysBoundOrNot) {
   BRICK_COVERS("CARD-1");
-  constexpr Tick kTicks = 100'000;
+  constexpr Tick kTraced = 100'000;
   for (const Engine& engine : {model_engine(), rtl_engine(1), lockstep_engine(2)})
     in_own_process([&] {
-      const Traffic traffic = servo_ic_traffic(3, kTicks);
+      const Traffic traffic = servo_ic_traffic(3, kTraced);
       ServoIcBlock block;
       Seen expected = run(block, traffic), seen;
       const std::vector<Change> inputs = input_changes(traffic, ServoIc::pin_table());
