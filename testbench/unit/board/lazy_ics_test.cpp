@@ -12,7 +12,7 @@
 namespace brick {
 namespace {
 
-constexpr std::uint32_t kThree = 0x7;
+constexpr std::uint32_t kThreeIcs = 0x7;
 
 class LazyIcs : public ::testing::TestWithParam<std::uint64_t> {
  protected:
@@ -71,7 +71,7 @@ class LazyIcs : public ::testing::TestWithParam<std::uint64_t> {
   }
 
   std::mt19937_64 random{random_seed(GetParam())};
-  BoardRig lazy{make_model_board(kThree), kThree}, eager{make_model_board(kThree), kThree};
+  BoardRig lazy{make_model_board(kThreeIcs), kThreeIcs}, eager{make_model_board(kThreeIcs), kThreeIcs};
 };
 
 TEST_P(LazyIcs, AreWhereEagerOnesAre) {

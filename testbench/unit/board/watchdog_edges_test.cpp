@@ -11,7 +11,7 @@
 namespace brick {
 namespace {
 
-constexpr Tick kMs = kPwmClockHz / 1000, kTimeout = 960 * 1024 * kTicksPerRef, kEnd = kTimeout + 12;
+constexpr Tick kMillisecond = kPwmClockHz / 1000, kTimeout = 960 * 1024 * kTicksPerRef, kEnd = kTimeout + 12;
 
 class WatchdogEdges : public ::testing::TestWithParam<bool> {
  protected:
@@ -45,16 +45,16 @@ INSTANTIATE_TEST_SUITE_P(Engines, WatchdogEdges, ::testing::Values(true, false),
                          [](const auto& engine) { return std::string(engine.param ? "Rtl" : "Model"); });
 
 TEST_P(WatchdogEdges, StrobeAtTheVeryEdgeWins) {
-  run_to(10 * kMs);
+  run_to(10 * kMillisecond);
   servo(false);
   strobe_at(kEnd);
   EXPECT_FALSE(tripped());
-  run_to(kEnd + kMs);
+  run_to(kEnd + kMillisecond);
   EXPECT_FALSE(tripped());
 }
 
 TEST_P(WatchdogEdges, StrobeOneEdgeLaterIsTooLate) {
-  run_to(10 * kMs);
+  run_to(10 * kMillisecond);
   servo(false);
   strobe_at(kEnd + kTicksPerRef);
   EXPECT_TRUE(tripped());
@@ -81,14 +81,14 @@ TEST_P(WatchdogEdges, ServoOneEdgeLaterIsTooLate) {
 TEST_P(WatchdogEdges, RisesAndFallsOfServoCountAlike) {
   Tick edge = 0;
   for (const bool level : {false, true}) {
-    run_to(edge += 12 * kMs);
+    run_to(edge += 12 * kMillisecond);
     servo(level);
     strobe_at(edge / kTicksPerRef * kTicksPerRef + 3000);
   }
-  run_to(edge + 24 * kMs);
+  run_to(edge + 24 * kMillisecond);
   EXPECT_FALSE(tripped()) << "the last one was a rise";
-  strobe_at((edge + 24 * kMs) / kTicksPerRef * kTicksPerRef + 300);
-  run_to(edge + 25 * kMs + 10);
+  strobe_at((edge + 24 * kMillisecond) / kTicksPerRef * kTicksPerRef + 300);
+  run_to(edge + 25 * kMillisecond + 10);
   EXPECT_TRUE(tripped());
 }
 
@@ -105,7 +105,7 @@ TEST_P(WatchdogEdges, FiveVoltsThatFailTripAtTheThirdEdge) {
     EXPECT_EQ(relay_and_lamp(), 1u) << "released, lit";
     rig.in.pwr_good = true;
     rig.apply();
-    rig.run(kMs);
+    rig.run(kMillisecond);
     EXPECT_TRUE(tripped()) << "latched";
     rig.in.rst_n = false;
     rig.apply();

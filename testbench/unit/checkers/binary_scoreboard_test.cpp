@@ -5,10 +5,10 @@
 
 #include <functional>
 
+#include "testbench/unit/checkers/microsecond.h"
+
 namespace brick {
 namespace {
-
-constexpr Tick kUs = ns_to_ticks(1'000);
 
 // Two lines of &1 with I17 = 2: a pulse, then a fall that stays.
 class Story {

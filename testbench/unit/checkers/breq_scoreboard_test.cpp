@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "testbench/unit/checkers/microsecond.h"
+
 namespace brick {
 namespace {
 
 constexpr Tick kLine = 52'228;  // one servo period
-constexpr Tick kUs = ns_to_ticks(1000);
 
 class BreqScoreboardTest : public ::testing::Test {
  protected:

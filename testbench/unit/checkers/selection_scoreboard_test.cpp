@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "testbench/unit/checkers/microsecond.h"
+
 namespace brick {
 namespace {
 
-constexpr Tick kUs = ns_to_ticks(1'000), kBegin = 1'000 * kUs, kLong = 10 * kBegin;
+constexpr Tick kBegin = 1'000 * kUs, kLong = 10 * kBegin;
 
 // `&2`, whose buffer has room, after `&1`, which has none; the pin rises that long after the command has begun.
 std::string judge(Tick rise, Tick calculation, Tick phase, Tick real_time) {
