@@ -13,4 +13,5 @@ function(brick_add_build_info target)
     BRICK_COMPILER="${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}" BRICK_VERILATOR="${verilator_VERSION}"
     BRICK_BUILD_TYPE="${CMAKE_BUILD_TYPE}")
   target_link_libraries(${target} PUBLIC nlohmann_json::nlohmann_json PRIVATE fmt::fmt brick_text brick_systemc)
+  brick_precompiled(${target})
 endfunction()

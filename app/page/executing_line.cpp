@@ -14,8 +14,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::uint32_t kLongest = 300;   // words of a line
-constexpr std::uint32_t kMostCalls = 16;  // of programs by programs
+constexpr std::uint32_t kMostWords = 300;  // words of a line
+constexpr std::uint32_t kMostCalls = 16;   // of programs by programs
 constexpr std::uint32_t kMotionProgram = 0;
 constexpr std::uint32_t kLine = 2;  // of the words that a function can be given: where the line begins
 
@@ -39,7 +39,7 @@ json stored_line(ImageCalls& image, const std::string& at, std::uint32_t program
       static_cast<std::uint32_t>(image.call("fixed_program_find", {kMotionProgram, program}).value_or(0));
   if (found == 0) return nullptr;
   const auto words = static_cast<std::uint32_t>(image.call("fixed_program_line", {found, offset}).value_or(0));
-  const std::uint32_t count = std::min(words, kLongest);
+  const std::uint32_t count = std::min(words, kMostWords);
   for (std::uint32_t i = 0; i < count; ++i)
     put_word(image, i, image.call("fixed_program_word", {found, offset + i}).value_or(0));
   return {{"at", at}, {"text", words_text(image, count)}};
@@ -49,7 +49,7 @@ json ring_line(ImageCalls& image, const std::string& at, std::uint32_t cs) {
   const std::uint64_t ahead = image.call("rotary_lines_ahead", {cs}).value_or(0);
   const auto first = static_cast<std::uint32_t>(ahead), words = static_cast<std::uint32_t>(ahead >> 32);
   std::uint32_t count = 0;
-  for (; count < words && count < kLongest; ++count) {
+  for (; count < words && count < kMostWords; ++count) {
     const auto place = static_cast<std::uint32_t>(image.call("rotary_offset", {cs, first, count}).value_or(0));
     const std::uint64_t value = image.call("rotary_word", {cs, place}).value_or(0);
     if (count != 0 && (value >> 47 & 1) != 0) break;  // the next line begins

@@ -10,8 +10,8 @@ namespace brick {
 namespace {
 
 constexpr std::uint32_t kOwn = 0x4000'0000, kOwnBytes = 0x4000;  // code, words, and the stack that ends it
-constexpr std::uint32_t kReturn = kOwn, kPutRegister = kOwn + 0x800;
-constexpr Cycle kSlice = 1000, kLongest = 1'000'000;  // CPU clocks; a function that looks takes a few thousand
+constexpr std::uint32_t kReturnTo = kOwn, kPutRegister = kOwn + 0x800;
+constexpr Cycle kSlice = 1000, kLongestCall = 1'000'000;  // CPU clocks; a function that looks takes a few thousand
 constexpr unsigned kRa = 1, kSp = 2, kGp = 3, kA0 = 10;
 
 constexpr std::uint32_t kWfi = 0x10500073;
@@ -50,13 +50,13 @@ std::optional<std::uint64_t> ImageCalls::call(const std::string& function,
   const auto address = image_.symbol(function);
   if (!address) return std::nullopt;
   cpu_.reset(*address);
-  cpu_.set_reg(kRa, kReturn);
+  cpu_.set_reg(kRa, kReturnTo);
   cpu_.set_reg(kSp, kOwn + kOwnBytes);
   cpu_.set_reg(kGp, machine_.cpu().reg(kGp));  // the same in all of the image
   unsigned at = kA0;
   for (const std::uint32_t argument : arguments) cpu_.set_reg(at++, argument);
   trapped_ = false;
-  const Cycle limit = cpu_.cycle() + kLongest;
+  const Cycle limit = cpu_.cycle() + kLongestCall;
   while (!trapped_ && cpu_.cycle() < limit)
     if (cpu_.run(cpu_.cycle() + kSlice) == Cpu::Stop::kSleep)
       return cpu_.reg(kA0) | std::uint64_t{cpu_.reg(kA0 + 1)} << 32;

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kPatience{200};
+constexpr std::chrono::milliseconds kPause{200};
 constexpr std::chrono::seconds kLongestEnd{60};       // of a job that was cancelled
 constexpr std::chrono::seconds kLongestSilence{300};  // a controller that starts anew is back before
 constexpr const char* kName = "brick-regress";
@@ -68,7 +68,7 @@ void end_job(const std::string& job) {
     if (std::chrono::steady_clock::now() >= end)
       throw UsageError(
           fmt::format("squeue: job {} was cancelled; expected its end within {} s", job, kLongestEnd.count()));
-    std::this_thread::sleep_for(kPatience);
+    std::this_thread::sleep_for(kPause);
   }
 }
 
