@@ -5,13 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include "testbench/unit/firmware_paths/pi.h"
+
 extern "C" {
 #include "firmware/motion/circle.h"
 }
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 struct Point {
   double x, y, z;

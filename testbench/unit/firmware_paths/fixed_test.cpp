@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "testbench/unit/firmware_paths/pi.h"
 #include "testbench/unit/random_seed.h"
 extern "C" {
 #include "firmware/motion/fixed_point.h"
@@ -69,7 +70,7 @@ TEST(Fixed, Roots) {
 }
 
 TEST(Fixed, Directions) {
-  constexpr double kTurn = 288230376151711744.0, kPi = 3.14159265358979323846;  // 2^58
+  constexpr double kTurn = 288230376151711744.0;  // 2^58
   std::mt19937_64 random(brick::random_seed(4));
   for (int i = 0; i < 20000; ++i) {
     const auto angle = static_cast<std::int64_t>(random() >> (2 + random() % 20));

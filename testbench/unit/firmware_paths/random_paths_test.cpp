@@ -4,6 +4,7 @@
 #include <random>
 
 #include "testbench/checkers/optimum.h"
+#include "testbench/unit/firmware_paths/pi.h"
 #include "testbench/unit/firmware_paths/spline_path.h"
 #include "testbench/unit/firmware_program/moving_motors.h"
 
@@ -19,8 +20,6 @@ namespace {
 
 using namespace moving_motors;
 using spline_path::Spline;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // An arc in Y and Z, about X.
 struct Arc {

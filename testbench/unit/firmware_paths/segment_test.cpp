@@ -2,6 +2,7 @@
 // it takes from the formulas of motion:5.2 and of circles.
 #include <set>
 
+#include "testbench/unit/firmware_paths/pi.h"
 #include "testbench/unit/firmware_paths/spline_path.h"
 #include "testbench/unit/firmware_program/moving_motors.h"
 
@@ -16,8 +17,6 @@ namespace {
 
 using namespace moving_motors;
 using spline_path::Spline;
-
-constexpr double kPi = 3.14159265358979323846;
 
 class Segments : public MovingMotors {
  protected:

@@ -1,5 +1,6 @@
 // Moves that wait behind Q, `/` or S in segments, when the motors are somewhere else at the start that follows
 // (motion:7.1/8): to absolute places, by distances, along arcs, by kinematic programs; not faster than F.
+#include "testbench/unit/firmware_paths/pi.h"
 #include "testbench/unit/firmware_paths/spline_path.h"
 #include "testbench/unit/firmware_program/moving_motors.h"
 
@@ -12,8 +13,6 @@ namespace {
 
 using namespace moving_motors;
 using spline_path::Spline;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Of a curve over 0 to 1, in the unit of its places: as a polygon of 100,000 sides.
 template <typename Place>
