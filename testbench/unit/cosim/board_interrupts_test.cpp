@@ -4,13 +4,13 @@
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/cosim/engines.h"
-#include "testbench/unit/board/board_rig.h"
+#include "testbench/unit/cosim/board_map.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
 namespace {
 
-constexpr std::uint32_t kTwoServoIcs = 0x3, kIoBase = 0x210, kHostSignals = 0x070010, kControlOutputs = 0x070012;
+constexpr std::uint32_t kHostSignals = 0x070010, kControlOutputs = 0x070012;
 
 class BoardInterrupts : public ::testing::TestWithParam<bool> {
  protected:

@@ -3,13 +3,12 @@
 #include <gmock/gmock.h>
 
 #include "systemc/cosim/engines.h"
+#include "testbench/unit/cosim/board_map.h"
 #include "testbench/unit/cosim/board_traffic.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
 namespace {
-
-constexpr std::uint32_t kTwoServoIcs = 0x3;
 
 std::unique_ptr<Board> lockstep(const RtlOptions& options = {}) {
   return make_lockstep_board(make_rtl_board(kTwoServoIcs, options), make_model_board(kTwoServoIcs, options.seed));

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "systemc/cosim/engines.h"
+#include "testbench/unit/cosim/board_map.h"
 #include "testbench/unit/cosim/distorted_board.h"
 #include "testbench/unit/cosim/motor_traffic.h"
 #include "testbench/unit/covers.h"
@@ -22,12 +23,12 @@ std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
 }
 
 constexpr std::uint32_t kServoIcMask = (1u << kMaxServoIcs) - 1;
-constexpr std::uint32_t kTwoIcs = 0x3, kAllIcs = 0x3FFFFF;  // as BoardInputs::fitted
+constexpr std::uint32_t kAllIcs = 0x3FFFFF;  // as BoardInputs::fitted
 
 // Ticks at which a pin moves at least in any of the lives below, with any seed: where clocks of chance are slow it
 // lasts up to kLongest times as long.
 constexpr Tick kLongest = 10;
-constexpr std::pair<MotorField, unsigned> kChanges[] = {
+constexpr std::pair<MotorField, unsigned> kMotorChanges[] = {
     {motor_pin::kPwmATop, 10},  {motor_pin::kPwmABot, 10},    {motor_pin::kPwmBTop, 10},  {motor_pin::kPwmBBot, 10},
     {motor_pin::kPwmCTop, 10},  {motor_pin::kPwmCBot, 10},    {motor_pin::kPfmPulse, 10}, {motor_pin::kPfmDir, 5},
     {motor_pin::kDac, 5},       {motor_pin::kDacB, 5},        {motor_pin::kAena, 4},      {motor_pin::kEqu, 4},
@@ -35,7 +36,7 @@ constexpr std::pair<MotorField, unsigned> kChanges[] = {
     {motor_pin::kCount, 200},
 };
 
-struct Life {
+struct MotorLife {
   const char* name;
   MotorTrafficOptions options;
   Tick ticks;
@@ -60,11 +61,11 @@ MotorTrafficOptions by_macro(std::uint32_t ics) {
 }
 
 // What moved on a board.
-class Seen {
+class SeenPins {
  public:
-  explicit Seen(Board& board) {
+  explicit SeenPins(Board& board) {
     for (std::size_t i = 0; i < fields_.size(); ++i)
-      for (unsigned n = 0; n < kChannels; ++n) fields_[i].set(kChanges[i].first, n, ~0u);
+      for (unsigned n = 0; n < kChannels; ++n) fields_[i].set(kMotorChanges[i].first, n, ~0u);
     board.on_change = [this](Tick, const BoardOutputs& before, const BoardOutputs& after) {
       sources |= 1u << after.get(pin::kPhaseSource);
       trips += after.get(pin::kWdTripped) & ~before.get(pin::kWdTripped);
@@ -80,8 +81,8 @@ class Seen {
   std::vector<std::string> lacks(std::uint32_t fitted) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < fields_.size(); ++i)
-      if (changes_[i] < kChanges[i].second)
-        names.push_back(fmt::format("{}: {} of {}", kChanges[i].first.name, changes_[i], kChanges[i].second));
+      if (changes_[i] < kMotorChanges[i].second)
+        names.push_back(fmt::format("{}: {} of {}", kMotorChanges[i].first.name, changes_[i], kMotorChanges[i].second));
     for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) {
       if ((fitted >> ic & 1) == 0) continue;
       const auto& w = moved_[ic].w;
@@ -93,8 +94,8 @@ class Seen {
   std::uint32_t sources = 0, trips = 0;  // ICs whose PHASE the board took; of the watchdog
 
  private:
-  std::array<MotorOutputs, std::size(kChanges)> fields_{};  // all bits of each
-  std::array<unsigned, std::size(kChanges)> changes_{};
+  std::array<MotorOutputs, std::size(kMotorChanges)> fields_{};  // all bits of each
+  std::array<unsigned, std::size(kMotorChanges)> changes_{};
   std::array<MotorOutputs, kMaxServoIcs> moved_{};
 };
 
@@ -105,16 +106,16 @@ MotorTrafficOptions five_volts_fail(std::uint32_t ics) {
   return options;
 }
 
-class MotorLockstep : public ::testing::TestWithParam<Life> {};
+class MotorLockstep : public ::testing::TestWithParam<MotorLife> {};
 
 TEST_P(MotorLockstep, IsEqualAtEveryTickUnderRandomLife) {
   BRICK_COVERS("CARD-6");
-  const Life& life = GetParam();
+  const MotorLife& life = GetParam();
   const std::uint32_t ics = life.options.ics;
   auto board = make_lockstep_board(make_rtl_board(ics), make_model_board(ics));
   const Tick ticks = static_cast<Tick>(from_environment("BRICK_MOTOR_TICKS", static_cast<std::uint64_t>(life.ticks)));
   const std::uint64_t seed = random_seed(1);
-  const Seen seen(*board);
+  const SeenPins seen(*board);
   MotorTraffic traffic(seed, life.options);
   const std::uint32_t drivers = ics & (life.options.macro_drives ? ~kServoIcMask : kServoIcMask);
   Tick end = ticks;
@@ -132,25 +133,26 @@ TEST_P(MotorLockstep, IsEqualAtEveryTickUnderRandomLife) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lives, MotorLockstep,
-                         ::testing::Values(Life{"OneIc", {0x1}, 400'000}, Life{"TwoIcs", {kTwoIcs}, 400'000},
-                                           Life{"TwoIcsRarely", {kTwoIcs, 3'000, 400}, 2'400'000},
-                                           Life{"TwoIcsLeftAlone", left_alone(kTwoIcs), 6'000'000},
-                                           Life{"TwoIcsFiveVoltsFail", five_volts_fail(kTwoIcs), 1'200'000},
-                                           Life{"AllIcs", without_trip(kAllIcs), 120'000},
-                                           Life{"AllIcsByMacro", by_macro(kAllIcs), 120'000}),
+                         ::testing::Values(MotorLife{"OneIc", {0x1}, 400'000},
+                                           MotorLife{"TwoIcs", {kTwoServoIcs}, 400'000},
+                                           MotorLife{"TwoIcsRarely", {kTwoServoIcs, 3'000, 400}, 2'400'000},
+                                           MotorLife{"TwoIcsLeftAlone", left_alone(kTwoServoIcs), 6'000'000},
+                                           MotorLife{"TwoIcsFiveVoltsFail", five_volts_fail(kTwoServoIcs), 1'200'000},
+                                           MotorLife{"AllIcs", without_trip(kAllIcs), 120'000},
+                                           MotorLife{"AllIcsByMacro", by_macro(kAllIcs), 120'000}),
                          [](const auto& life) { return std::string(life.param.name); });
 
 // One motor cable of one engine is wired wrongly: A and B are swapped.
 TEST(MotorLockstepControl, SwappedEncoderLinesAreFoundAtTheirCounter) {
   BRICK_COVERS("CARD-6");
-  auto model = std::make_unique<DistortedBoard>(make_model_board(kTwoIcs));
+  auto model = std::make_unique<DistortedBoard>(make_model_board(kTwoServoIcs));
   model->distort_motor = [](unsigned ic, MotorInputs& in) {
     std::uint16_t& pins = in.pins[1];
     if (ic == 1) pins = static_cast<std::uint16_t>((pins & ~3u) | (pins & 1u) << 1 | (pins >> 1 & 1u));
   };
-  auto board = make_lockstep_board(make_rtl_board(kTwoIcs), std::move(model));
+  auto board = make_lockstep_board(make_rtl_board(kTwoServoIcs), std::move(model));
   try {
-    MotorTraffic(3, {kTwoIcs}).run(*board, 100'000);
+    MotorTraffic(3, {kTwoServoIcs}).run(*board, 100'000);
     FAIL() << "not found";
   } catch (const LockstepDifference& e) {
     EXPECT_THAT(e.what(), ::testing::HasSubstr("\n  servo_ic1.ch2.count: rtl "));
@@ -161,7 +163,7 @@ TEST(MotorLockstepControl, SwappedEncoderLinesAreFoundAtTheirCounter) {
 TEST(MotorLockstepControl, PinsThatRestAreNamed) {
   DistortedBoard board(make_model_board(0x1));
   board.distort = [](BoardInputs& in) { in.pa_wr_n = true; };
-  const Seen seen(board);
+  const SeenPins seen(board);
   MotorTraffic(1, {0x1}).run(board, 400'000);
   EXPECT_THAT(seen.lacks(0x1),
               ::testing::ElementsAre("pfm_pulse: 0 of 10", "pfm_dir: 0 of 5", "dac: 0 of 5", "dac_b: 0 of 5",

@@ -9,17 +9,17 @@
 namespace brick {
 namespace {
 
-struct Change {
+struct WordChange {
   Tick tick;
   BoardOutputs before, after;
-  bool operator==(const Change& o) const { return tick == o.tick && before == o.before && after == o.after; }
+  bool operator==(const WordChange& o) const { return tick == o.tick && before == o.before && after == o.after; }
 };
 
 constexpr Tick kEnd = 120'000;
 
 // `longest` = 0: as far as the inputs allow; else pieces of random length up to `longest`, some stopped by pins.
-std::vector<Change> changes(Board& board, Tick longest) {
-  std::vector<Change> list;
+std::vector<WordChange> changes(Board& board, Tick longest) {
+  std::vector<WordChange> list;
   board.on_change = [&](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
     list.push_back({t, before, after});
   };
@@ -47,7 +47,7 @@ class RunLength : public ::testing::TestWithParam<std::unique_ptr<Board> (*)()> 
 TEST_P(RunLength, DoesNotChangeAnyPinAtAnyTick) {
   BRICK_COVERS("CARD-6");
   auto whole = GetParam()();
-  const std::vector<Change> expected = changes(*whole, 0);
+  const std::vector<WordChange> expected = changes(*whole, 0);
   ASSERT_GT(expected.size(), 1000u);
   for (std::size_t i = 1; i < expected.size(); ++i) {
     ASSERT_LT(expected[i - 1].tick, expected[i].tick);
