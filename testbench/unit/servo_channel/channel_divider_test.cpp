@@ -1,6 +1,9 @@
 // The clocks of the channels, clk_ref / 2^n: each number of SCLK and PFM_CLK by what it times, and that a new one waits
 // for the end of the running period (servo-ic:3.3, servo-ic:5/2). DAC_CLK and ADC_CLK show themselves:
 // channel_output_test.cpp.
+#include <array>
+#include <functional>
+
 #include "testbench/unit/servo_channel/channel_fixture.h"
 
 namespace brick {
@@ -67,6 +70,49 @@ TEST_F(ChannelDividerTest, EachNumberOfPfmClkTimesPulses) {
     wait_until([&] { return !rig_.other(kPulse, 1); });
     EXPECT_EQ(rig_.now() - rise, period(n)) << "n " << n;
     EXPECT_EQ(pulse_rises() - rise, 4 * period(n)) << "n " << n;
+  }
+}
+
+// The first period of each begins with the first reference edge behind a reset, and its length is that of the reset
+// value: 12 ticks of SCLK and PFM_CLK, 24 of DAC_CLK, 48 of ADC_CLK. A status bit, a pulse, the second bit of $7FFFC0
+// and the first of $FFFFFE rise with an edge each.
+TEST_F(ChannelDividerTest, EachRunsFromTheFirstReferenceEdgeBehindAReset) {
+  for (Tick later = 0; later < 48; later += kTicksPerRef + 1) {
+    SCOPED_TRACE(later);
+    rig_.write(ic_words::kClockControl, kWithout | 0xFFFu);
+    rig_.ticks(2 * period(7) + later);
+    rig_.in.pins.fill(0);
+    rig_.in.phase = false;
+    rig_.reset();
+    const Tick first = (rig_.now() / kTicksPerRef + 1) * kTicksPerRef;
+    rig_.ref();
+    control(1, kPfm);
+    rig_.write(1, words::kOutC, 0xFFFFFF);  // underflows at once
+    rig_.pin(1, kUser, true);
+    rig_.in.phase = true;
+    struct Line {
+      const char* name;
+      Tick period, least;  // no sooner than this
+      std::function<bool()> level;
+    };
+    const Line lines[] = {
+        {"PFM_CLK", 12, 12, [&] { return rig_.other(kPulse, 1); }},
+        {"SCLK", 12, 24, [&] { return bool{status(1, status_bit::kUser)}; }},
+        {"ADC_CLK", 48, 0, [&] { return (rig_.pins().serial & 8) != 0; }},
+        {"DAC_CLK", 24, 24, [&] { return (rig_.pins().serial & 2) != 0; }},
+    };
+    std::array<Tick, 4> rise{};
+    for (const Tick end = rig_.now() + 3 * 48; rig_.now() < end;) {
+      rig_.tick();
+      for (unsigned i = 0; i < 4; ++i)
+        if (rise[i] == 0 && lines[i].level()) rise[i] = rig_.now();
+    }
+    for (unsigned i = 0; i < 4; ++i) {
+      ASSERT_NE(rise[i], 0) << lines[i].name;
+      EXPECT_EQ((rise[i] - first) % lines[i].period, 0) << lines[i].name;
+      EXPECT_GE(rise[i] - first, lines[i].least) << lines[i].name;
+    }
+    EXPECT_EQ(rise[0] - first, 12) << "the first addition behind the write";
   }
 }
 

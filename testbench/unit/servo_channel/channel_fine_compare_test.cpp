@@ -167,6 +167,26 @@ TEST_F(ChannelFineCompareTest, AChangeOfTheSourceLeavesNothing) {
   }
 }
 
+// A source without 1/T is at the beginning of its cell (servo-ic:5.7/2), whichever way it came in: 5 and a fraction is
+// left with the count from 5 to 6 upwards, with that from 6 to 5 downwards, and 5 itself with that to 4.
+TEST_F(ChannelFineCompareTest, ASourceWithoutHardware1TIsAtTheBeginningOfItsCell) {
+  control(1, kX4 | kCounterReset);
+  control(2, kWord | kFromChannel1);
+  control(1, kX4);
+  steps(1, 3, true);
+  for (const unsigned fraction : {0u, 1u, 2048u, 4095u}) {
+    for (const bool up : {true, false}) {  // 3 to 8 and back
+      place(2, {5, fraction}, {100, 0}, 0);
+      for (int i = 0; i < 5; ++i) {
+        const bool before{equ(2)};
+        step(1, up);
+        const int to = up ? 4 + i : 7 - i;
+        EXPECT_EQ(bool{equ(2)} != before, to == (up ? 6 : fraction == 0 ? 4 : 5)) << fraction << ", to " << to;
+      }
+    }
+  }
+}
+
 // And the first motion after the change is seen, from where the new source stands.
 TEST_F(ChannelFineCompareTest, TheNewSourceIsFollowedFromWhereItStands) {
   control(1, kWord | kCounterReset);

@@ -241,9 +241,10 @@ TEST_F(ChannelSerialTest, BitsChangeAsTheClockFallsAndPhaseStartsOver) {
   EXPECT_EQ(starts, 20) << "a stream of 576 ticks each 203";
 }
 
-// 24 bits at n = 7 take 9216 of the 13057 ticks between two rises of PHASE. Of a bit of three ticks the clock is high
-// for two (servo-ic:5.13/7).
+// 24 bits at n = 7 take 9216 of the 13057 ticks between two rises of PHASE. The clock is high for the second half of a
+// bit, of one of three ticks for two (servo-ic:5.13/7).
 TEST_F(ChannelSerialTest, DividersGiveEveryBitRate) {
+  const auto high = [](unsigned n) { return n == 0 ? Tick{2} : (kTicksPerRef << n) / 2; };
   for (unsigned n = 0; n < 8; ++n) {
     rig_.write(ic_words::kClockControl, ic_words::clock_control::kAdcDivider.set(
                                             ic_words::clock_control::kDacDivider.set(kOwnClocks, n), 7 - n));
@@ -252,9 +253,10 @@ TEST_F(ChannelSerialTest, DividersGiveEveryBitRate) {
     EXPECT_EQ(receive(kDacClk, [&] { return (rig_.pins().serial & kDacStrobe) != 0; }), 0x7FFFC0u) << "n " << n;
     EXPECT_EQ(period_, 3 << n);
     EXPECT_EQ(edges_, 24) << "n " << n;
-    if (n == 0) { EXPECT_EQ(high_, 24 * 2); }
+    EXPECT_EQ(high_, 24 * high(n)) << "n " << n;
     EXPECT_EQ(receive(kAdcClk, [&] { return (rig_.pins().serial & kAdcStrobe) != 0; }), 0xFFFFFEu) << "n " << n;
     EXPECT_EQ(period_, 3 << (7 - n));
+    EXPECT_EQ(high_, 24 * high(7 - n)) << "n " << n;
     EXPECT_EQ(edges_, 24) << "n " << n;
   }
 }
@@ -267,6 +269,7 @@ TEST_F(ChannelSerialTest, DacSendsEighteenBitsOfTheCommand) {
   EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacB, 3); }), 0x5A3CBFu & 0xFFFFC0);
   control(3, kDac | kInvertAb);
   EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacA, 3); }), ~(0xA5C37Fu & 0xFFFFC0) & 0xFFFFFF) << "inverted";
+  EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacB, 3); }), ~(0x5A3CBFu & 0xFFFFC0) & 0xFFFFFF) << "inverted";
   EXPECT_EQ(rig_.pins().pwm >> 12 & 0xF, 0u) << "no PWM on a DAC channel";
   control(3, kDac);
   rig_.in.trip = true;

@@ -1,5 +1,7 @@
 // Timers to the SCLK: T1 and T2 at a latch of SERVO, the sign of a turn, and the times of an MLDT (servo-ic:5.2,
 // servo-ic:5.5, servo-ic:5.6). A count shows itself at its own edge, by EQU.
+#include <set>
+
 #include "testbench/unit/servo_channel/channel_fixture.h"
 
 namespace brick {
@@ -151,6 +153,35 @@ TEST_F(ChannelTimerTest, FractionIsTheQuotientFrom26ReferenceEdgesOn) {
     }
   }
   EXPECT_GT(seen, 20);
+}
+
+// SCLK as fast as clk_ref: the 13 periods of the division are made up two at a time until the last of the 26 edges, and
+// what is latched is e as of the edge before, so of T2 - 1 (servo-ic:5.7/3). Nearly T1 is left over of 4096 for either
+// T1: both of two periods carry.
+TEST_F(ChannelTimerTest, FractionIsTheQuotientWithTheFastestSclkToo) {
+  constexpr Tick kCounts = 3 * kTicksPerRef;  // behind a change of the pins at an edge
+  rig_.write(ic_words::kClockControl, ic_words::clock_control::kSclkDivider.set(kServoEachPhase, 0));
+  control(1, kX4 | kFine);
+  for (const Tick t1 : {Tick{41}, Tick{79}}) {  // 4096 = 99 * 41 + 37 = 51 * 79 + 67
+    std::set<Tick> seen;
+    rig_.ref();
+    for (int i = 0; i < 150; ++i) {
+      const Tick count = rig_.now() + kCounts, end = rig_.now() + t1 * kTicksPerRef;
+      step(1, true, 0);
+      while (rig_.now() < end) {
+        const bool servo = rig_.pins().servo;
+        rig_.tick();
+        const Tick latch = (rig_.now() / kTicksPerRef + 1) * kTicksPerRef;
+        if (i < 2 || !servo || rig_.pins().servo || latch - count < 26 * kTicksPerRef || latch >= end) continue;
+        rig_.ticks(latch - rig_.now());
+        const Tick t2 = (latch - count) / kTicksPerRef - 1;
+        EXPECT_EQ(fine2::kServo.get(timer2()), static_cast<std::uint32_t>(4096 * (t2 - 1) / t1))
+            << "T1 " << t1 << ", T2 " << t2;
+        seen.insert(t2);
+      }
+    }
+    EXPECT_GE(static_cast<Tick>(seen.size()), t1 / 2 - 8) << "of those from there to the next change of the pins";
+  }
 }
 
 // Each rest is longer than T1, the time between the counts before it, so the fraction is full; but none is known after

@@ -1,0 +1,112 @@
+// The lines of the serial streams at every tick: with which edge of the clock a bit changes, and what a reset leaves of
+// a stream (servo-ic:5.13/1, servo-ic:5.13/2, servo-ic:5.13/8).
+#include "testbench/unit/servo_channel/channel_fixture.h"
+
+namespace brick {
+namespace {
+
+class ChannelSerialLineTest : public ChannelTest {
+ protected:
+  static constexpr unsigned kDacClk = 1, kDacStrobe = 2, kAdcClk = 4, kAdcStrobe = 8;
+  void SetUp() override {
+    ChannelTest::SetUp();
+    rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
+    rig_.ticks(2 * 13057);
+  }
+  // Both serial clocks divide by 2^n; PHASE as SetUp leaves it.
+  void divide(unsigned n) {
+    using namespace ic_words::clock_control;
+    rig_.write(ic_words::kClockControl, kAdcDivider.set(kDacDivider.set(kServoEachPhase, n), n));
+  }
+  void wait_for_phase(bool level) {
+    wait_until([&] { return rig_.pins().phase != level; });
+    wait_until([&] { return rig_.pins().phase == level; });
+  }
+  unsigned serial() { return rig_.pins().serial; }
+};
+
+// Words of alternating bits: from the second bit on each begins with a fall of its clock, and with nothing else.
+TEST_F(ChannelSerialLineTest, EachBitBeginsWithAFallOfItsClock) {
+  constexpr std::uint32_t kWord = 0xAAAAAA;
+  control(1, kDac);
+  rig_.write(1, words::kOutA, kWord);
+  rig_.write(1, words::kOutB, ~kWord & 0xFFFFFF);
+  rig_.write(ic_words::kDacStrobe, ~kWord & 0xFFFFFF);
+  rig_.write(ic_words::kAdcStrobe, kWord);
+  for (unsigned n = 0; n < 8; ++n) {
+    divide(n);
+    wait_for_phase(true);
+    wait_for_phase(true);
+    rig_.ticks(2 * (kTicksPerRef << n));  // into the first bit, or the second
+    std::array<int, 4> begun{};           // DAC strobe, DAC A, DAC B, ADC strobe
+    ChannelPins last = rig_.pins();
+    const auto lines = [](const ChannelPins& pins) {
+      return std::array<bool, 4>{(pins.serial & kDacStrobe) != 0, (pins.others >> (4 * kDacA) & 1) != 0,
+                                 (pins.others >> (4 * kDacB) & 1) != 0, (pins.serial & kAdcStrobe) != 0};
+    };
+    for (Tick t = 0; t < 25 * (kTicksPerRef << n); ++t) {
+      rig_.tick();
+      const ChannelPins now = rig_.pins();
+      const unsigned falls = last.serial & ~now.serial;
+      for (unsigned line = 0; line < 4; ++line) {
+        if (lines(now)[line] == lines(last)[line]) continue;
+        ++begun[line];
+        EXPECT_NE(falls & (line == 3 ? kAdcClk : kDacClk), 0u) << "n " << n << ", line " << line << ", tick " << t;
+      }
+      last = now;
+    }
+    EXPECT_GE(begun[0], 21) << "n " << n;
+    EXPECT_GE(begun[1], 15) << "n " << n << ", 18 bits";
+    EXPECT_GE(begun[2], 15) << "n " << n << ", 18 bits";
+    EXPECT_GE(begun[3], 21) << "n " << n;
+  }
+}
+
+// A reset before the first bit of a stream, in the middle of one, or between a trip and its zeros: all four lines are
+// low at once, and nothing moves until PHASE rises. One rise of PHASE more or less is nothing to that.
+TEST_F(ChannelSerialLineTest, AResetEndsTheStreamsUntilPhaseRises) {
+  struct Row {
+    Tick ticks;  // behind a rise of PHASE
+    bool trip;
+  };
+  constexpr Tick kBit = kTicksPerRef << 7;
+  for (const Row& row : {Row{6, false}, Row{5 * kBit + kBit - 30, false}, Row{30 * kBit, true}})
+    for (const bool more : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << row.ticks << " ticks, " << more);
+      rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
+      divide(7);
+      control(1, kDac);
+      rig_.write(1, words::kOutA, 0x7FFFC0);
+      rig_.write(ic_words::kDacStrobe, 0xFFFFFF);
+      rig_.write(ic_words::kAdcStrobe, 0xFFFFFF);
+      wait_for_phase(true);
+      wait_for_phase(true);
+      if (more) wait_for_phase(true);
+      rig_.ticks(row.ticks);
+      rig_.in.trip = row.trip;
+      if (row.trip) rig_.ref(2);
+      EXPECT_NE(serial(), 0u) << "a strobe stands high";
+      rig_.in.trip = false;
+      rig_.in.rst_n = false;
+      rig_.in.pins.fill(0);
+      for (Tick t = 0; t < 4; ++t) {
+        rig_.tick();
+        ASSERT_EQ(serial(), 0u) << "in the reset, tick " << t;
+      }
+      rig_.in.rst_n = true;
+      for (Tick t = 0; t < 3000; ++t) {
+        rig_.tick();
+        ASSERT_EQ(serial(), 0u) << "tick " << t;
+        ASSERT_FALSE(rig_.other(kDacA, 1));
+      }
+      rig_.in.phase = false;
+      rig_.ticks(20);
+      rig_.in.phase = true;
+      rig_.ticks(2 * 48 + 20);  // the reset value of ADC_CLK has 48 ticks a bit
+      EXPECT_EQ(serial() & kAdcStrobe, kAdcStrobe) << "$FFFFFE";
+      EXPECT_EQ(serial() & kDacStrobe, kDacStrobe) << "$7FFFC0, its second bit and those behind it";
+    }
+}
+
+}  // namespace
+}  // namespace brick
