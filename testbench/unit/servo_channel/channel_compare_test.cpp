@@ -43,6 +43,23 @@ TEST_F(ChannelCompareTest, IncrementOf0LeavesTheComparesWhereTheyAre) {
   EXPECT_EQ(rig_.peek(1, words::kCompareB), kFar);
 }
 
+// The other compare goes the way of the channel's own count, whichever way channel 1 counts at that edge.
+TEST_F(ChannelCompareTest, EachChannelGoesTheWayOfItsOwnCount) {
+  for (const unsigned ch : {2u, 3u, 4u})
+    for (const bool up : {true, false}) {
+      control(ch, kX4 | kCounterReset);
+      control(ch, kX4);
+      rig_.write(ch, words::kCompareA, 0);
+      rig_.write(ch, words::kCompareB, 100);
+      rig_.write(ch, words::kCompareIncrement, 7);
+      const bool before{equ(ch)};
+      step(1, !up, 0);
+      step(ch, up);
+      EXPECT_NE(bool{equ(ch)}, before) << ch;
+      EXPECT_EQ(rig_.peek(ch, words::kCompareB), up ? 107u : 93u) << ch;
+    }
+}
+
 // Leaving 0 moves the other compare by 7. Written one edge before, the new value moves; written at the edge or after
 // it, it stands.
 TEST_F(ChannelCompareTest, AWriteBeatsAMoveAtTheSameEdge) {

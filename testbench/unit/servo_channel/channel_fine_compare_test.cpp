@@ -380,5 +380,25 @@ TEST_F(ChannelFineCompareTest, AWriteTakesAwayTheCountThatIsNotFoundYetAndNoOthe
   }
 }
 
+// Channel 2 compares its own position, so that nothing of channel 1 takes its count away, at any edge about it.
+TEST_F(ChannelFineCompareTest, WhatChannel1DoesIsNothingToAPositionOfOnesOwn) {
+  constexpr int kEdges = kSclk / kTicksPerRef;
+  for (const std::uint32_t word : {kX4, kWord | kCounterReset, decode_mode(regs::decode::kMldt) | kPfm | kFine}) {
+    for (int n = 2 * kEdges; n < 5 * kEdges; ++n) {
+      control(1, kWord);
+      control(2, kWord | kCounterReset);
+      control(2, kWord);
+      steps(2, 4, true, 20 * kSclk);
+      place(2, {4, 4095}, {100, 0}, 5);
+      while (rig_.now() % kSclk != 0) rig_.tick();
+      const bool before{equ(2)};
+      step(2, true, n * kTicksPerRef);
+      control(1, word);
+      rig_.ticks(8 * kSclk);
+      EXPECT_NE(bool{equ(2)}, before) << n << " edges, control of channel 1 " << std::hex << word;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace brick

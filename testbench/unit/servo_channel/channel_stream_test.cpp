@@ -8,19 +8,21 @@ namespace {
 class ChannelSerialLineTest : public ChannelTest {
  protected:
   static constexpr unsigned kDacClk = 1, kDacStrobe = 2, kAdcClk = 4, kAdcStrobe = 8;
+  // PHASE comes from the pin.
   void SetUp() override {
     ChannelTest::SetUp();
-    rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
-    rig_.ticks(2 * 13057);
+    divide(0);
+    rig_.ticks(6 * kPhase);
   }
-  // Both serial clocks divide by 2^n; PHASE as SetUp leaves it.
-  void divide(unsigned n) {
+  void divide(unsigned n) {  // both serial clocks, by 2^n
     using namespace ic_words::clock_control;
-    rig_.write(ic_words::kClockControl, kAdcDivider.set(kDacDivider.set(kServoEachPhase, n), n));
+    rig_.write(ic_words::kClockControl, kAdcDivider.set(kDacDivider.set(ic_words::kClockControl.reset, n), n));
   }
-  void wait_for_phase(bool level) {
-    wait_until([&] { return rig_.pins().phase != level; });
-    wait_until([&] { return rig_.pins().phase == level; });
+  void phase_rises() {
+    rig_.in.phase = false;
+    rig_.ticks(20);
+    rig_.in.phase = true;
+    rig_.ticks(2 * kTicksPerRef);  // behind the edge of clk_ref that sees it
   }
   unsigned serial() { return rig_.pins().serial; }
 };
@@ -35,8 +37,8 @@ TEST_F(ChannelSerialLineTest, EachBitBeginsWithAFallOfItsClock) {
   rig_.write(ic_words::kAdcStrobe, kWord);
   for (unsigned n = 0; n < 8; ++n) {
     divide(n);
-    wait_for_phase(true);
-    wait_for_phase(true);
+    rig_.ticks(kTicksPerRef << 7);
+    phase_rises();
     rig_.ticks(2 * (kTicksPerRef << n));  // into the first bit, or the second
     std::array<int, 4> begun{};           // DAC strobe, DAC A, DAC B, ADC strobe
     ChannelPins last = rig_.pins();
@@ -63,49 +65,70 @@ TEST_F(ChannelSerialLineTest, EachBitBeginsWithAFallOfItsClock) {
 }
 
 // A reset before the first bit of a stream, in the middle of one, or between a trip and its zeros: all four lines are
-// low at once, and nothing moves until PHASE rises. One rise of PHASE more or less is nothing to that.
+// low at once, and nothing moves until PHASE rises. One rise of PHASE more or less is nothing to that, nor a reset that
+// is over before the next edge of clk_ref.
 TEST_F(ChannelSerialLineTest, AResetEndsTheStreamsUntilPhaseRises) {
   struct Row {
     Tick ticks;  // behind a rise of PHASE
     bool trip;
   };
-  constexpr Tick kBit = kTicksPerRef << 7;
-  for (const Row& row : {Row{6, false}, Row{5 * kBit + kBit - 30, false}, Row{30 * kBit, true}})
-    for (const bool more : {false, true}) {
-      SCOPED_TRACE(::testing::Message() << row.ticks << " ticks, " << more);
-      rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
-      divide(7);
+  constexpr Tick kBit = kTicksPerRef << 5;
+  for (const Row& row : {Row{0, false}, Row{6 * kBit - 30, false}, Row{27 * kBit, true}})
+    for (const Tick length : {1, 2, 4, 5}) {
+      const bool more = length % 4 == 1;
+      SCOPED_TRACE(::testing::Message() << row.ticks << " ticks, " << length);
+      divide(5);
       control(1, kDac);
       rig_.write(1, words::kOutA, 0x7FFFC0);
       rig_.write(ic_words::kDacStrobe, 0xFFFFFF);
       rig_.write(ic_words::kAdcStrobe, 0xFFFFFF);
-      wait_for_phase(true);
-      wait_for_phase(true);
-      if (more) wait_for_phase(true);
+      phase_rises();
+      rig_.ticks(27 * kBit);
+      if (more) phase_rises();
+      phase_rises();
       rig_.ticks(row.ticks);
       rig_.in.trip = row.trip;
       if (row.trip) rig_.ref(2);
       EXPECT_NE(serial(), 0u) << "a strobe stands high";
+      while (rig_.now() % kTicksPerRef != 0) rig_.tick();
       rig_.in.trip = false;
       rig_.in.rst_n = false;
-      rig_.in.pins.fill(0);
-      for (Tick t = 0; t < 4; ++t) {
+      for (Tick t = 0; t < length; ++t) {
         rig_.tick();
         ASSERT_EQ(serial(), 0u) << "in the reset, tick " << t;
       }
       rig_.in.rst_n = true;
-      for (Tick t = 0; t < 3000; ++t) {
+      for (Tick t = 0; t < 1500; ++t) {
         rig_.tick();
         ASSERT_EQ(serial(), 0u) << "tick " << t;
         ASSERT_FALSE(rig_.other(kDacA, 1));
       }
-      rig_.in.phase = false;
-      rig_.ticks(20);
-      rig_.in.phase = true;
+      phase_rises();
       rig_.ticks(2 * 48 + 20);  // the reset value of ADC_CLK has 48 ticks a bit
       EXPECT_EQ(serial() & kAdcStrobe, kAdcStrobe) << "$FFFFFE";
       EXPECT_EQ(serial() & kDacStrobe, kDacStrobe) << "$7FFFC0, its second bit and those behind it";
     }
+}
+
+// A trip that the first edge behind a reset sees is one, though there was another before it: the DACs get their word
+// (servo-ic:10/11).
+TEST_F(ChannelSerialLineTest, ATripThatStandsBehindAResetSendsItsZeros) {
+  for (const bool before : {false, true}) {
+    rig_.in.trip = before;
+    rig_.ref(2);
+    rig_.in.trip = true;
+    rig_.reset();
+    int rises = 0, strobes = 0;
+    unsigned last = 0;
+    for (Tick t = 0; t < 30 * 24; ++t) {  // the reset value of DAC_CLK has 24 ticks a bit
+      rig_.tick();
+      rises += (serial() & ~last & kDacClk) != 0;
+      strobes += (last & ~serial() & kDacStrobe) != 0;
+      last = serial();
+    }
+    EXPECT_EQ(rises, 24) << before;
+    EXPECT_EQ(strobes, 1) << before;
+  }
 }
 
 }  // namespace

@@ -200,6 +200,32 @@ TEST_F(ChannelTimerTest, FractionIsNoneAfterATurn) {
   EXPECT_EQ(rest(true, 500), 4095u);
 }
 
+// 1/T comes on an edge of clk_ref before a count, at its edge, and one behind it. Where it was off at the edge of the
+// count there is no fraction until the next one (servo-ic:5.7/1).
+TEST_F(ChannelTimerTest, ACountBeforeHardware1TCameOnHasNoFraction) {
+  for (const Tick behind : {-kTicksPerRef, Tick{0}, kTicksPerRef}) {
+    control(1, kX4);
+    steps(1, 3, true, 40 * kSclk);
+    const bool before{status(2, status_bit::kUser)};
+    rig_.in.pins[1] ^= 1u << kUser;
+    edge_of([&] { return bool{status(2, status_bit::kUser)} != before; });  // an SCLK; the third after it counts
+    step(1, true, 3 * kSclk + behind - kTicksPerRef);
+    control(1, kX4 | kFine);
+    rig_.ticks(100 * kSclk);
+    EXPECT_EQ(fine2::kServo.get(timer2()), behind < 0 ? 4095u : 0u) << behind << " ticks behind the count";
+  }
+}
+
+// Both clocks are inputs behind a reset: SERVO does not fall, so what shows is what the reset left.
+TEST_F(ChannelTimerTest, AResetEmptiesTheServoFraction) {
+  control(1, kX4 | kFine);
+  steps(1, 4, true, 100 * kSclk);
+  ASSERT_NE(fine2::kServo.get(timer2()), 0u);
+  rig_.reset();
+  control(1, kX4 | kFine);
+  EXPECT_EQ(timer2(), 0u);
+}
+
 TEST_F(ChannelTimerTest, CaptureWithACountTakesTheEndOfTheCellAtWhichItCameIn) {
   control(1, kX4 | kFine | kFlag);
   for (const bool up : {true, false, true, true, false, false}) {
