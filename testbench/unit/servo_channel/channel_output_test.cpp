@@ -61,12 +61,19 @@ TEST_F(ChannelTest, PulseShorterThanTheDeadTimeIsSwallowed) {
   }
 }
 
+// The top switch of A, the bottom one of B and the top one of C are on, those beside them off.
 TEST_F(ChannelTest, InversionTurnsBothSwitchesRound) {
-  const ChannelPins before = rig_.pins();
-  control(1, kInvertAb);
-  EXPECT_EQ((rig_.pins().pwm ^ before.pwm) & 0xF, 0xFu);
-  control(1, kInvertC);
-  EXPECT_EQ((rig_.pins().pwm ^ before.pwm) & 0x30, 0x30u);
+  rig_.write(ic_words::kPwmControl, pwm_control(kMaxCount, 0));
+  rig_.write(1, words::kOutA, 0x7FFF00);
+  rig_.write(1, words::kOutB, 0x800000);
+  rig_.write(1, words::kOutC, 0x7FFF00);
+  rig_.ticks(4 * kPhase);
+  constexpr unsigned kOn = 1u << kTopA | 1u << kBottomB | 1u << kTopC;
+  for (const auto& [word, inverted] :
+       {std::pair{0u, 0u}, {kInvertAb, 0x0Fu}, {kInvertC, 0x30u}, {kInvertAb | kInvertC, 0x3Fu}}) {
+    control(1, word);
+    EXPECT_EQ(rig_.pins().pwm & 0x3F, kOn ^ inverted) << std::hex << word;
+  }
 }
 
 TEST_F(ChannelTest, PwmCommandIsUsedFromTheTurnaroundOn) {
