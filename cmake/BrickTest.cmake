@@ -14,8 +14,9 @@ function(brick_sanitize target)
   target_link_options(${target} PUBLIC ${BRICK_SANITIZER_LINK_FLAGS})
 endfunction()
 
-# What sanitized tests test stands in libraries, at -O1. In the tests the checks of each pointer, for null and
-# for alignment, are a third of the compiler's work: the address sanitizer finds null too, and ./dev asan has both.
+# What sanitized tests test stands in libraries, at -O1 but for some of them. In the tests the checks of each pointer,
+# for null and for alignment, are a third of the compiler's work: the address sanitizer finds null too, and ./dev asan
+# has both.
 set(test_options $<$<CONFIG:Release>:-O1>)
 set(quick_test_options $<$<CONFIG:Release>:-O0>)
 set(sanitized_test_options -O0)  # behind brick_sanitize(), whose -O1 would undo it

@@ -41,7 +41,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kReplayedMs = 1.0;  // of waveform before the step that failed
 constexpr std::size_t kMostReplays = 20;
 constexpr const char* kUsualView = "smoke";  // of a bench that has none of its own
-constexpr std::chrono::milliseconds kFirstPatience{200}, kMostPatience{5000};
+constexpr std::chrono::milliseconds kPatience{200}, kMostPatience{5000};
 constexpr double kUnknownOfTask = 4;  // so many runs whose length nobody knows fill a task
 
 volatile std::sig_atomic_t asked_to_stop = 0;
@@ -129,7 +129,7 @@ class Regression {
       }
       if (pool.empty()) break;
       show(fmt::format("{} running", pool.size()));
-      if (const auto ended = pool.wait(kFirstPatience)) take(*ended);
+      if (const auto ended = pool.wait(kPatience)) take(*ended);
     }
   }
 
@@ -170,12 +170,12 @@ class Regression {
       double longest = 0;
       for (const std::size_t i : waiting) longest = std::max(longest, plan_.runs[i].limit_seconds);
       cluster.submit(tasks_of(waiting), options_.task_seconds + longest);
-      std::chrono::milliseconds patience = kFirstPatience;
+      std::chrono::milliseconds patience = kPatience;
       bool working = true;
       while (working && !waiting.empty() && asked_to_stop == 0) {
         std::this_thread::sleep_for(patience);
         working = cluster.working();  // before the results: what ends between them counts
-        patience = collect(waiting) ? kFirstPatience : std::min(2 * patience, kMostPatience);
+        patience = collect(waiting) ? kPatience : std::min(2 * patience, kMostPatience);
         show(fmt::format("{} on the cluster", waiting.size()));
       }
       if (working) cluster.cancel();
@@ -252,7 +252,7 @@ class Regression {
       words[0] = this_executable();
       pool.start(0, words, beside, run.limit_seconds);
       std::optional<Ended> ended;
-      while (!ended && asked_to_stop == 0) ended = pool.wait(kFirstPatience);
+      while (!ended && asked_to_stop == 0) ended = pool.wait(kPatience);
       if (!ended) return;
       const Result again = judge(run, *ended, beside);
       if (again.step != result.step)

@@ -32,10 +32,10 @@ bool Pic8259::idle() const {
 
 Pic8259::Registers Pic8259::coming() const {
   Registers next = registers_;
-  if (served()) next.acknowledge(registers_.acknowledged(line2_));
   if (reads_poll()) next.poll = false;
   if (in.wr && in.addr == kCommand) next.write_command(in.wdata);
   if (in.wr && in.addr == kMask) next.write_second(in.wdata);
+  if (served()) next.acknowledge(registers_.acknowledged(line2_));  // never with a write
   next.armed |= static_cast<std::uint8_t>(~line2_);  // a line that is low now arms its next edge, whatever clears it
   return next;
 }

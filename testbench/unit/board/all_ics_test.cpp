@@ -7,13 +7,14 @@
 
 #include "systemc/cosim/engines.h"
 #include "testbench/unit/board/board_rig.h"
+#include "testbench/unit/board/words.h"
 #include "testbench/unit/covers.h"
 #include "testbench/unit/servo_ic/clock_words.h"
 
 namespace brick {
 namespace {
 
-constexpr std::uint32_t kAll = 0x3FFFFF, kNobody = 31;
+constexpr std::uint32_t kAll = 0x3FFFFF;
 constexpr unsigned kFirstMacro = 18;
 constexpr std::uint32_t kBases[22] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300,
                                       0x7B200, 0x7B300, 0x78220, 0x78320, 0x79220, 0x79320, 0x7A220, 0x7A320,
@@ -46,7 +47,7 @@ TEST_P(AllIcs, AnIcThatIsNotFittedIsNotThere) {
     rig.run(3);
     rig.write(true, clock_address(ic), clock_word(0, 3, 0));
     EXPECT_EQ(rig.read(true, strobe_address(ic)), 0u) << "IC " << ic;
-    EXPECT_EQ(rig.get(pin::kPhaseSource), kNobody) << "IC " << ic;
+    EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource) << "IC " << ic;
     const unsigned next = (ic + 1) % 22;
     EXPECT_EQ(rig.read(true, strobe_address(next)), 0xFFFFFEu) << "IC " << next;
   }
@@ -69,7 +70,7 @@ TEST_P(AllIcs, EachCanSupplyTheBoard) {
     rig.write(true, clock_address(ic), clock_word(0, 3, 3));
     rig.run(4 * period);  // released while high
   }
-  EXPECT_EQ(rig.get(pin::kPhaseSource), kNobody);
+  EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
 }
 
 TEST_P(AllIcs, LowestIndexOfSeveralSourcesWins) {

@@ -6,6 +6,7 @@
 
 #include "systemc/cosim/engines.h"
 #include "testbench/unit/board/board_rig.h"
+#include "testbench/unit/board/words.h"
 #include "testbench/unit/covers.h"
 #include "testbench/unit/servo_ic/clock_words.h"
 
@@ -13,7 +14,7 @@ namespace brick {
 namespace {
 
 constexpr std::uint32_t kTwoIcs = 0x3, kFourIcs = 0xF;  // as BoardInputs::fitted
-constexpr std::uint32_t kNoSource = 31, kExternalSource = 30;
+constexpr std::uint32_t kExternalSource = 30;
 // A clock pin is released within one SERVO period and taken within one more; of PHASE and SERVO periods at reset
 // values.
 constexpr Tick kHandOver = 3 * 4 * 13057;
@@ -132,8 +133,8 @@ TEST_P(BoardOn, TheIcWithDirectionZeroSuppliesTheWholeBoard) {
   EXPECT_EQ(four.get(pin::kPhaseSource), kNoSource);
 }
 
-// servo-ic:1.3 and servo-ic:6.2: MACRO IC 0 is at $078400 with 64 words of either space, none of them a servo IC's, and
-// index 18 of the sources. Bit 0 of the kinds is its own.
+// servo-ic:1.3, servo-ic:6.2, servo-ic:7.2/5: MACRO IC 0 is at $078400 with 64 words of either space, none of them a
+// servo IC's, and index 18 of the sources. Bit 0 of the kinds is its own.
 TEST_P(BoardOn, AMacroIcHasItsPlaceItsKindAndItsClocks) {
   constexpr std::uint32_t kMacro = 0x78400, kClock = kMacro + 0x0C, kPwm = kMacro + 0x0D, kChannel = kMacro + 0x15;
   BoardRig five = board_with(0x4000F);

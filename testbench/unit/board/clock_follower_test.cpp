@@ -9,13 +9,13 @@
 
 #include "systemc/servo_ic/clock_history.h"
 #include "systemc/servo_ic/servo_ic.h"
+#include "testbench/unit/board/words.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
 namespace {
 
-// Words of an IC and, 8 words a channel, of channel 1.
-constexpr unsigned kClock = 0x04, kPwm = 0x1C, kChannelControl = 5, kFirstOutput = 2;
+constexpr unsigned kClock = 0x04, kPwm = 0x1C;  // words of an IC
 constexpr std::uint32_t kFollows = 3 << 12;
 constexpr std::uint32_t kOwn = 1 << 20;  // all hardware clocks at 39.3216 MHz, SERVO at half the speed of PHASE
 
@@ -110,7 +110,7 @@ class ClockFollowerDeadTime : public ::testing::TestWithParam<Tick> {
   void start(std::uint32_t command) {
     pair.write(true, kClock, kOwn);  // a half triangle: 2 I7m00 + 3 = 203 ticks
     pair.write(true, kPwm, 100 << 8 | 255);
-    pair.write(false, kFirstOutput, command);
+    pair.write(false, kOutA, command);
     pair.run(30'000);
     ASSERT_EQ(pair.compare(), "");
   }
@@ -124,7 +124,7 @@ TEST_P(ClockFollowerDeadTime, OutlastsPeriodsOfTheClock) {
   const Tick edge = pair.edge;
   while (pair.edge == edge) pair.run(1);
   pair.run(GetParam());
-  pair.write(false, kFirstOutput, 0x7FFF00);
+  pair.write(false, kOutA, 0x7FFF00);
   const Tick written = pair.now;
   pair.run_to(written + 2500 + GetParam());  // some periods, asked between them
   EXPECT_EQ(pair.compare(), "");
@@ -142,7 +142,7 @@ TEST_P(ClockFollowerDeadTime, StartsWithACommandWrittenInThePeriodBeforeAJump) {
     pair.run(2 * 406 + GetParam());
     ASSERT_EQ(pair.compare(), "");
     pair.run(406);
-    pair.write(false, kFirstOutput, to);
+    pair.write(false, kOutA, to);
     pair.run(3 * 406 + 2 * GetParam());
     ASSERT_EQ(pair.compare(), "") << std::hex << to;
     pair.run(1500);
@@ -184,7 +184,7 @@ class Life {
       std::uint32_t control = pick(1u << 24) & ~0x40Fu;
       control |= one_in(2) ? 0x800008 : 3;  // pulses, counted; or an encoder
       pair_.write(true, 8 * channel + kChannelControl, control);
-      for (unsigned out = 0; out < 3; ++out) pair_.write(false, 8 * channel + kFirstOutput + out, command());
+      for (unsigned out = 0; out < 3; ++out) pair_.write(false, 8 * channel + kOutA + out, command());
     }
     for (int round = 0; round < 60; ++round) {
       disturb();
@@ -223,7 +223,7 @@ class Life {
       case 0:
       case 1:
       case 2:
-        return pair_.write(false, 8 * channel + kFirstOutput + pick(3), command());
+        return pair_.write(false, 8 * channel + kOutA + pick(3), command());
       case 3:
       case 4: {
         MotorInputs in = pair_.pins;

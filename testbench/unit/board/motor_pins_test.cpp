@@ -7,6 +7,7 @@
 
 #include "systemc/cosim/engines.h"
 #include "testbench/unit/board/board_rig.h"
+#include "testbench/unit/board/words.h"
 #include "testbench/unit/cosim/motor_traffic.h"
 #include "testbench/unit/covers.h"
 
@@ -205,8 +206,7 @@ TEST(EquOfPulses, InterruptsAtItsEdgeWithoutAnyoneWatching) {
   EXPECT_TRUE(seen(0) == watched);
 }
 
-// Words of channel 1; the next channels are 8 words further.
-constexpr std::uint32_t kMotorControl = 5, kOutA = 2, kOutC = 4, kCompareA = 7, kCompareB = 7;  // Y and X
+constexpr std::uint32_t kCompareA = 7, kCompareB = 7;  // Y and X
 
 class MotorBoard : public ::testing::Test {
  protected:
@@ -244,9 +244,9 @@ TEST_F(MotorBoard, CompareOfTheFirstChannelInterruptsTheHost) {
   for (unsigned ic = 0; ic < 3; ++ic) {
     place = 0;
     step(ic);
-    rig.write(true, kServoIcBase[ic] + kMotorControl, 0x400 | 3);  // counter held at 0
+    rig.write(true, kServoIcBase[ic] + kChannelControl, 0x400 | 3);  // counter held at 0
     rig.run(12);
-    rig.write(true, kServoIcBase[ic] + kMotorControl, 3);
+    rig.write(true, kServoIcBase[ic] + kChannelControl, 3);
     rig.write(false, kServoIcBase[ic] + kCompareA, 3);
     rig.write(true, kServoIcBase[ic] + kCompareB, 1000);
     const std::uint32_t before = ist(), mine = ic < 2 ? 0x20u << ic : 0;
@@ -265,7 +265,7 @@ TEST_F(MotorBoard, CompareInterruptComesAtItsEdgeWithoutAnyoneWatching) {
   // stages of its synchroniser, then the latch. Found here by asking each tick, against one long run that stops at the
   // pin.
   isa_write(0x21A, 0x20);
-  rig.write(true, 0x78000 + kMotorControl, 3);
+  rig.write(true, 0x78000 + kChannelControl, 3);
   rig.write(false, 0x78000 + kCompareA, 0);
   rig.write(true, 0x78000 + kCompareB, 1000);
   rig.run(200);
@@ -285,7 +285,7 @@ TEST_F(MotorBoard, CompareInterruptComesAtItsEdgeWithoutAnyoneWatching) {
   BoardRig other{make_model_board(kThree), kThree};
   std::swap(rig, other);
   isa_write(0x21A, 0x20);
-  rig.write(true, 0x78000 + kMotorControl, 3);
+  rig.write(true, 0x78000 + kChannelControl, 3);
   rig.write(false, 0x78000 + kCompareA, 0);
   rig.write(true, 0x78000 + kCompareB, 1000);
   rig.run(200);
@@ -324,9 +324,9 @@ TEST_F(MotorBoard, StopsAtASelectedMotorPin) {
 TEST_F(MotorBoard, TripSwitchesTheOutputsOff) {
   start_clocks();
   for (const auto base : kServoIcBase) {
-    rig.write(true, base + kMotorControl, 0x4003);         // PWM, amplifier enabled
-    rig.write(true, base + 8 + kMotorControl, 0x5803);     // EQU of channel 2 set by hand
-    rig.write(true, base + 16 + kMotorControl, 0xC04003);  // DAC, PFM
+    rig.write(true, base + kChannelControl, 0x4003);         // PWM, amplifier enabled
+    rig.write(true, base + 8 + kChannelControl, 0x5803);     // EQU of channel 2 set by hand
+    rig.write(true, base + 16 + kChannelControl, 0xC04003);  // DAC, PFM
     rig.write(false, base + 16 + kOutA, 0x7FFFC0);
     rig.write(false, base + 16 + kOutC, 0x300000);
   }

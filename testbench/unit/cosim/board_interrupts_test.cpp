@@ -203,7 +203,7 @@ TEST_P(BoardInterrupts, The8259TakesTheOtherControllersPlace) {
   EXPECT_EQ(io_read(11), 0xFFu);
 }
 
-// host-bus:4.1 and host-bus:4.5: the named signals are those of the controller that is fitted, by level and by edge.
+// host-bus:4.1, host-bus:4.5/13: the named signals are those of the controller that is fitted, by level and by edge.
 TEST_P(BoardInterrupts, NamedSignalsAreThoseOfTheControllerThatIsFitted) {
   rig.run(6);
   io_write(10, 0x05);

@@ -18,6 +18,11 @@ class BoardMap : public ::testing::TestWithParam<bool> {
   explicit BoardMap(std::uint32_t fitted)
       : rig(GetParam() ? make_rtl_board(fitted) : make_model_board(fitted), fitted) {}
 
+  // So long that nothing is under way; then `phase` ticks behind an edge of clk_ref.
+  void rest(Tick phase) {
+    rig.run(30);
+    while (rig.now() % kTicksPerRef != phase) rig.run(1);
+  }
   void strobe(bool BoardInputs::*command, Tick width) {
     rig.apply();
     rig.run(10);

@@ -39,7 +39,7 @@ TEST_P(BoardMap, ReadOfTheHostPortTakesTheWordAtItsSample) {
 TEST_P(BoardMap, DataPinsAreDrivenFromTheWordOfTheRamToTheEndOfTheRead) {
   rig.write(true, 0x060000, 0x1234);
   for (Tick phase = 0; phase < kTicksPerRef; ++phase) {
-    rig.run(30 + phase);
+    rest(phase);
     rig.in.pa_addr = 0x060000;
     rig.in.pa_x = true;
     rig.in.pa_aa = 4;
@@ -108,7 +108,7 @@ TEST_P(BoardMap, DataPinsAreDrivenFromTheSampleToTheEndOfTheRead) {
 TEST_P(BoardMap, WritesBackToBackDoNotMerge) {
   for (Tick phase = 0; phase < 3; ++phase) {
     rig.write(true, kHostSignals, 0);
-    rig.run(30 + phase);
+    rest(phase);
     rig.in.pa_x = true;
     rig.in.pa_addr = kHostSignals;
     rig.apply();
@@ -133,7 +133,7 @@ TEST_P(BoardMap, AWriteIsOfTheAddressWhereItStands) {
   for (Tick phase = 0; phase < kTicksPerRef; ++phase)
     for (const Tick low : {kStands + 1, kStands + 3, kStands + 6, Tick{30}}) {
       rig.write(true, kHostSignals, 0);
-      rig.run(30 + phase);
+      rest(phase);
       rig.in.pa_x = true;
       rig.in.pa_addr = kHostSignals;
       rig.in.pa_wdata = 7;
@@ -203,7 +203,7 @@ TEST_P(BoardMap, SelectsMayComeATickBehindTheStrobe) {
   for (const Place& at : {Place{kHostSignals, 0, 0x6}, {kServoIcBase[0] + 6, 2, 0x123456}, {0x060007, 4, 0x89AB}})
     for (Tick phase = 0; phase < 3; ++phase)
       for (const bool write : {true, false}) {
-        rig.run(30 + phase);
+        rest(phase);
         rig.in.pa_aa = 1;
         rig.in.pa_addr = ~at.address & 0x7FFFF;
         rig.in.pa_x = true;
@@ -241,7 +241,7 @@ TEST_P(BoardMap, StrobesOfOthersMeetTheSelectsOfTheirNeighbours) {
     for (Tick phase = 0; phase < 3; ++phase)
       for (const Tick low : {1, 2, 3, 4, 7, 8, 9, 20})
         for (const bool write : {true, false}) {
-          rig.run(30 + phase);
+          rest(phase);
           const auto select = [&](bool ours) {
             rig.in.pa_aa = ours ? at.aa : 1;
             rig.in.pa_addr = at.address;
@@ -282,7 +282,7 @@ TEST_P(BoardMap, TaOfTheRamIsNotTakenAwayByTheStrobeBeforeIt) {
   for (Tick phase = 0; phase < 3; ++phase)
     for (const unsigned before : {1u, 2u})
       for (const bool write : {false, true}) {
-        rig.run(30 + phase);
+        rest(phase);
         bool& strobe_n = write ? rig.in.pa_wr_n : rig.in.pa_rd_n;
         rig.in.pa_aa = 1;
         for (unsigned i = 0; i < before; ++i)
@@ -316,7 +316,7 @@ TEST_P(BoardMap, StrobesOfOtherDevicesDoNotTouchTheRegistersThatFollow) {
   for (const std::uint8_t other : {std::uint8_t{1}, std::uint8_t{4}}) {  // main memory, dual-ported RAM
     for (Tick phase = 0; phase < 3; ++phase) {
       rig.write(true, kHostSignals, 0x5);
-      rig.run(30 + phase);
+      rest(phase);
       rig.in.pa_x = true;
       rig.in.pa_addr = 0x60000;
       rig.in.pa_aa = other;
@@ -361,7 +361,7 @@ TEST_P(BoardMap, NoReadShowsTheSampleOfTheOneBeforeIt) {
           for (Tick high = low < 2 ? 1 : 0; high <= 2; ++high) {
             SCOPED_TRACE(::testing::Message() << std::hex << before.address << " then " << next.address << ", phase "
                                               << phase << ", low for " << low << ", high for " << high);
-            rig.run(30 + phase);
+            rest(phase);
             const auto fall = [&](const Place& at) {
               rig.in.pa_addr = at.address;
               rig.in.pa_x = true;
@@ -390,8 +390,8 @@ TEST_P(BoardMap, NoReadShowsTheSampleOfTheOneBeforeIt) {
   }
 }
 
-// docs/architecture.md, reset and power: the reset acts at once and forgets the cycle that it meets. D is let go, /TA
-// is low, and a strobe that is still low behind it asks for nothing, however many were counted before.
+// host-bus:2.6/10: the reset acts at once and forgets the cycle that it meets. D is let go, /TA is low, and a strobe
+// that is still low behind it asks for nothing, however many were counted before.
 TEST_P(BoardMap, AResetInACycleEndsItThoughItsStrobeStaysLow) {
   struct Place {
     std::uint32_t address;
