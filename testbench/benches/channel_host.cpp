@@ -72,15 +72,18 @@ void ChannelHost::cycle(const PortACycle& c) {
   constexpr unsigned kBackground = 0;  // cpu.task
   if (bench().machine.task() != kBackground) return;
   if (c.write || c.on_chip || c.address < 0x78000 || c.address > 0x7BFFF) return;
-  const Tick sample = bus_edge(c, bench().machine), before = sample - 1 - kTicksPerRef;  // what falls there is latched
-  const auto next = std::upper_bound(servo_falls_.begin(), servo_falls_.end(), before);
-  reads_[2 * c.address + (c.x ? 1 : 0)] = {before, c.data, next == servo_falls_.begin() ? -1 : *std::prev(next),
-                                           sample};
+  const Tick sample = bus_edge(c, bench().machine);  // what changes a period of clk_ref before it is read
+  reads_[2 * c.address + (c.x ? 1 : 0)] = {sample - 1 - kTicksPerRef, c.data, -1, sample};
 }
 
+// An IC latches with its own edge of the chain: before the pin falls if it drives the net, behind it if it follows.
 ChannelHost::BusRead ChannelHost::last_read(unsigned channel, const regs::Register& word) const {
   const auto at = reads_.find(2 * address(channel, word) + (word.space == 'X' ? 1 : 0));
-  return at == reads_.end() ? BusRead{} : at->second;
+  if (at == reads_.end()) return {};
+  BusRead read = at->second;
+  const auto next = std::upper_bound(servo_falls_.begin(), servo_falls_.end(), read.tick - behind(channel / kChannels));
+  if (next != servo_falls_.begin()) read.servo = *std::prev(next);
+  return read;
 }
 
 void ChannelHost::follow() {

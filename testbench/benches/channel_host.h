@@ -89,7 +89,7 @@ class ChannelHost : public ServoHost {
   Difference counts(unsigned channel);
   Difference equs(unsigned channel);
 
-  // Tick of the last fall of SERVO before the background's last read of a word on Port A, and what was read.
+  // The background's last read of a word on Port A, and the tick of the last fall of SERVO that it shows.
   struct BusRead {
     Tick tick = -1;
     std::uint32_t data = 0;
