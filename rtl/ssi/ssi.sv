@@ -43,7 +43,7 @@ module ssi (
   // ------------------------------------------------------------------ groups
   logic phase_rise, phase_fall, servo_rise, servo_fall;
   ssi_edges u_edges (
-    .clk_pwm_i, .rst_ni, .phase_i, .servo_i,
+    .clk_pwm_i, .phase_i, .servo_i,
     .phase_rise_o(phase_rise), .phase_fall_o(phase_fall), .servo_rise_o(servo_rise), .servo_fall_o(servo_fall)
   );
 

@@ -1,10 +1,10 @@
 // Edges of the PHASE and SERVO nets, for all groups of serial encoder inputs: each output is high before the edge of
-// clk_pwm_i that is the first to see the net's new level. Asynchronous reset; the nets idle high. docs/ssi.md.
+// clk_pwm_i that is the first to see the net's new level. No reset: an edge starts nothing before a word is written.
+// docs/ssi.md.
 `default_nettype none
 
 module ssi_edges (
   input  wire logic clk_pwm_i,
-  input  wire logic rst_ni,
   input  wire logic phase_i,
   input  wire logic servo_i,
   output logic      phase_rise_o,
@@ -14,14 +14,9 @@ module ssi_edges (
 );
 
   logic phase_q, servo_q;
-  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      phase_q <= 1'b1;
-      servo_q <= 1'b1;
-    end else begin
-      phase_q <= phase_i;
-      servo_q <= servo_i;
-    end
+  always_ff @(posedge clk_pwm_i) begin
+    phase_q <= phase_i;
+    servo_q <= servo_i;
   end
   assign phase_rise_o = phase_i & ~phase_q;
   assign phase_fall_o = phase_q & ~phase_i;

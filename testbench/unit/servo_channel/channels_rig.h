@@ -103,10 +103,12 @@ class ChannelsRig {
   std::uint32_t read(unsigned channel, const regs::Register& word) {
     return read(word.space == 'X', base(channel) + word.address);
   }
-  void reset() {
+  void reset(Tick length = 4) {  // 0: between two edges
     in.rst_n = false;
-    ticks(4);
+    apply();
+    ticks(length);
     in.rst_n = true;
+    apply();
   }
   // Levels of one channel's pins.
   void pin(unsigned channel, unsigned bit, bool level) {
