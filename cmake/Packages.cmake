@@ -1,6 +1,6 @@
 # Everything comes from Debian packages; ./dev installs them.
 find_package(PkgConfig REQUIRED)
-if(EXISTS ${CMAKE_SOURCE_DIR}/build/venv/requirements.txt)  # ./dev makes it from tools/requirements.txt
+if(EXISTS ${CMAKE_SOURCE_DIR}/build/venv/bin/python3)  # ./dev makes it from tools/requirements.txt
   set(Python3_EXECUTABLE ${CMAKE_SOURCE_DIR}/build/venv/bin/python3)
 endif()
 find_package(Python3 REQUIRED COMPONENTS Interpreter)  # the scripts in tools/
