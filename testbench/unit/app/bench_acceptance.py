@@ -284,7 +284,6 @@ def ssi():
         bench_passes("ssi", "systemc", seed, board=board)
 
 
-# covers: SSI-1
 def ssi_lockstep():
     bench_passes("ssi", "lockstep", "3", board="geo-pmac")
 

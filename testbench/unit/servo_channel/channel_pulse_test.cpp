@@ -75,7 +75,7 @@ TEST_F(ChannelPulseTest, SwitchesAreOffForTheFirstDeadTimeAfterReset) {
     rig_.ticks(26114 + 4 * kPhase);
     edge_of([&] { return !rig_.pins().phase; });
     rig_.ticks(place);
-    rig_.reset(place / 50 % 2 == 0 ? 4 : 0);
+    rig_.reset(place / 100 % 2 == 0 ? 4 : 0);
     for (Tick t = 0; t < 240; ++t) {
       ASSERT_EQ(rig_.pins().pwm, 0u) << t;
       rig_.tick();
