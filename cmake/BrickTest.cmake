@@ -59,6 +59,16 @@ function(brick_test_code target)
   endif()
 endfunction()
 
+# brick_when(VAR NAME [OTHER ...]): VAR becomes what add_test() takes for a test that only `ctest -C night` runs, if
+# NAME is one of the others, else nothing.
+function(brick_when var name)
+  set(when "")
+  if(name IN_LIST ARGN)
+    set(when CONFIGURATIONS night)
+  endif()
+  set(${var} ${when} PARENT_SCOPE)
+endfunction()
+
 function(brick_add_test)
   cmake_parse_arguments(T "SANITIZED;QUICK;TOGETHER" "NAME;TIMEOUT" "SOURCES;LIBRARIES;ALONE;ENVIRONMENT;NIGHT"
                         ${ARGN})
