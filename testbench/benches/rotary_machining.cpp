@@ -19,10 +19,13 @@ namespace {
 using Limits = PathHost::Limits;
 using System = PathHost::System;
 
-constexpr unsigned kLines = 44, kLinesBehind = 24;    // by itself; that come after the pause
+constexpr unsigned kLines = 44;                       // by itself
 constexpr double kLineMs = 5, kSegment = 5, kTa = 4;  // 200 lines a second
 constexpr double kWay = 100, kFine = 16;              // counts of a line; constants have sixteenths
 constexpr unsigned kI16 = 6, kI17 = 12, kRing = 200, kItems = 512, kAhead = 8;
+// After the pause: those that fill the buffer, those that lookahead takes in (a segment each, and the moves that
+// blend), and as many while these are sent.
+constexpr unsigned kLinesBehind = 2 * (kI17 + kAhead);
 constexpr unsigned kLook = 3, kLooks = 5;                          // lines between looks at PR; how many at least
 constexpr unsigned kLeast = 2 * kI17 + kLook * (kLooks - 1) + 1;   // lines for these
 constexpr double kPause = 60, kPauseMore = 30, kLongestDry = 500;  // ms: behind the last line calculated; until it
