@@ -47,16 +47,10 @@ module dpram (
     .d_i   ({rd_falls_i, wr_falls_i, ~cpu_rd_ni, ~cpu_wr_ni}),
     .q_o   ({rd2_q, wr2_q, rd_low2_q, wr_low2_q})
   );
-  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      {rd3_q, wr3_q} <= 4'h0;
-      sel_q          <= 1'b0;
-      pins_q         <= 15'h0;
-    end else begin
-      {rd3_q, wr3_q} <= {rd2_q, wr2_q};
-      sel_q          <= cpu_sel_i;
-      pins_q         <= {cpu_addr_i, cpu_x_i};
-    end
+  always_ff @(posedge clk_pwm_i) begin
+    {rd3_q, wr3_q} <= {rd2_q, wr2_q};
+    sel_q          <= cpu_sel_i;
+    pins_q         <= {cpu_addr_i, cpu_x_i};
   end
 
   // ---------------------------------------------------------------- CPU side, arbitration
@@ -93,28 +87,29 @@ module dpram (
       wr_done_q  <= 2'd0;
       busy_q     <= 1'b0;
       own_q      <= 1'b0;
-      own_wr_q   <= 1'b0;
-      sampled_q  <= 1'b0;
-      proven_q   <= 1'b0;
       show_q     <= 1'b0;
-      cell_q     <= 15'h0;
-      wdata_q    <= 16'h0;
     end else begin
       if (rd_vain || (grant && !wr_low)) rd_done_q <= rd2_q;
       if (wr_vain || grant)              wr_done_q <= wr2_q;
       rd_ack_q   <= rd_done_q;  // a clock after the data: /TA may be sampled later than they are
       busy_q     <= request & blocked;
-      sampled_q  <= grant & wr_low;
-      proven_q   <= sampled_q & still;
       if (grant) begin
-        own_q    <= 1'b1;
-        own_wr_q <= wr_low;
-        cell_q   <= pins_q;
-        wdata_q  <= cpu_wdata_i;
+        own_q <= 1'b1;
         if (!wr_low) show_q <= pins_here;
       end else if (!sampled_q && !proven_q && (fallen || !(own_wr_q ? wr_low2_q : rd_low2_q))) begin
         own_q <= 1'b0;
       end
+    end
+  end
+
+  // A reset ends the strobes, and with them a write that has been sampled.
+  always_ff @(posedge clk_pwm_i) begin
+    sampled_q <= grant & wr_low;
+    proven_q  <= sampled_q & still;
+    if (grant) begin
+      own_wr_q <= wr_low;
+      cell_q   <= pins_q;
+      wdata_q  <= cpu_wdata_i;
     end
   end
 
@@ -129,9 +124,8 @@ module dpram (
     else if (grant && !wr_low) drive_q <= 1'b1;
   end
 
-  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni)               drive_rd_q <= 2'd0;
-    else if (grant && !wr_low) drive_rd_q <= rd2_q;
+  always_ff @(posedge clk_pwm_i) begin
+    if (grant && !wr_low) drive_rd_q <= rd2_q;
   end
 
   assign cpu_drive_o = drive_q & (rd_falls_i == drive_rd_q);

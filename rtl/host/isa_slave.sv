@@ -4,8 +4,8 @@
 // the request to the RAM follows one edge later. It ends at the edge that finds no command: writes, with the data of
 // the last clk_pwm edge that saw the command low, and side effects of reads follow one edge later. Two commands at
 // once, or one that was low at a reset, do nothing. The data bus is driven in a read of ours alone and let go with the
-// command, without a clock. IOCHRDY and MEMCS16# are open collector: 0 pulls, 1 lets go. Asynchronous reset; RESETDRV
-// resets what stands behind this bus (host_reset_o). docs/isa_slave.md.
+// command, without a clock. IOCHRDY and MEMCS16# are open collector: 0 pulls, 1 lets go. Asynchronous reset, of what
+// shows at a port; RESETDRV resets what stands behind this bus (host_reset_o). docs/isa_slave.md.
 `default_nettype none
 
 module isa_slave (
@@ -88,13 +88,12 @@ module isa_slave (
   assign la_hit = (la2_q[2:0] == window_q[5:3]) & (slot8_q | (la2_q[6:3] == window_q[9:6]));
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      sd_low_q <= 16'h0;
-      la_hit_q <= 4'h0;
-    end else begin
-      if (cmd2_q[Iow] | cmd2_q[Memw]) sd_low_q <= sd2_q;
-      la_hit_q <= {la_hit_q[2:0], la_hit};
-    end
+    if (!rst_ni) la_hit_q <= 4'h0;
+    else         la_hit_q <= {la_hit_q[2:0], la_hit};
+  end
+
+  always_ff @(posedge clk_pwm_i) begin
+    if (cmd2_q[Iow] | cmd2_q[Memw]) sd_low_q <= sd2_q;
   end
 
   // ---------------------------------------------------------------- clk_ref: address, switches, RESETDRV
@@ -102,26 +101,19 @@ module isa_slave (
   logic        aen_q, sbhe_nq;
   logic        resetdrv;
   sync2 u_resetdrv_sync (.clk_i(clk_ref_i), .rst_ni, .d_i(isa_resetdrv_i), .q_o(resetdrv));
+  always_ff @(posedge clk_ref_i) begin
+    sa_q          <= isa_sa_i[16:0];
+    aen_q         <= isa_aen_i;
+    sbhe_nq       <= isa_sbhe_ni;
+    io_base_q     <= io_base_i;
+    io_decode16_q <= io_decode16_i;
+    window_flat_q <= window_flat_i;
+  end
+
+  // MEMCS16# is made with these before their first edge.
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      sa_q          <= 17'h0;
-      aen_q         <= 1'b0;
-      sbhe_nq       <= 1'b1;
-      io_base_q     <= 8'h0;
-      io_decode16_q <= 1'b0;
-      window_q      <= 10'h0;
-      window_flat_q <= 1'b0;
-      slot8_q       <= 1'b0;
-    end else begin
-      sa_q          <= isa_sa_i[16:0];
-      aen_q         <= isa_aen_i;
-      sbhe_nq       <= isa_sbhe_ni;
-      io_base_q     <= io_base_i;
-      io_decode16_q <= io_decode16_i;
-      window_q      <= window_i;
-      window_flat_q <= window_flat_i;
-      slot8_q       <= slot8_i;
-    end
+    if (!rst_ni) {window_q, slot8_q} <= 11'h0;
+    else         {window_q, slot8_q} <= {window_i, slot8_i};
   end
   assign host_reset_o = resetdrv;
 
@@ -221,7 +213,6 @@ module isa_slave (
       asks_q     <= 1'b0;
       kind_q     <= 4'h0;
       target_q   <= 4'h0;
-      lanes_q    <= 2'b00;
       be_q       <= 2'b00;
       byte8_q    <= 1'b0;
       mem_addr_q <= 15'h0;
@@ -236,7 +227,6 @@ module isa_slave (
       if (start) begin
         kind_q     <= cmd2_q;
         target_q   <= decoded;
-        lanes_q    <= (decoded[Memory] & ~byte8) ? {~sbhe_nq, ~sa_q[0]} : 2'b01;
         be_q       <= byte8 ? 2'b10 : {~sbhe_nq, ~sa_q[0]};
         byte8_q    <= byte8;
         mem_addr_q <= {window_flat_q ? sa_q[15:14] : page_q, sa_q[13:1]};
@@ -257,6 +247,10 @@ module isa_slave (
         page_q   <= 2'b00;
       end
     end
+  end
+
+  always_ff @(posedge clk_ref_i) begin
+    if (start) lanes_q <= (decoded[Memory] & ~byte8) ? {~sbhe_nq, ~sa_q[0]} : 2'b01;
   end
 
   // ---------------------------------------------------------------- towards the blocks

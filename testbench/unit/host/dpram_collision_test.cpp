@@ -370,6 +370,13 @@ TEST_F(DpramCollisionTest, AResetEndsBusyAndFreesTheWord) {
       both.tick();  // the first edge of both clocks behind the reset
       EXPECT_FALSE(host_busy());
       host_end_read();
+
+      const unsigned kept = host_read(word);
+      host_start(word, false);
+      both.ref(2);
+      reset();
+      host_end_write(~kept & 0xFFFF);
+      EXPECT_EQ(host_read(word), kept) << "what the host had begun is not written";
     }
 }
 

@@ -44,6 +44,16 @@ TEST_F(DpramTest, WordOfAReadStaysThroughWrites) {
   EXPECT_EQ(cpu_read(6), 0x4321u);
 }
 
+TEST_F(DpramTest, WordOfAReadOfTheHostStaysThroughWrites) {
+  host_write(6, 0x1234);
+  EXPECT_EQ(host_read(6), 0x1234u);
+  host_write(7, 0x5678);
+  cpu_write(6, 0x4321);
+  cpu_write(7, 0x8765);
+  EXPECT_EQ(both.get("mem_rdata"), 0x1234u);
+  EXPECT_EQ(host_read(6), 0x4321u);
+}
+
 TEST_F(DpramTest, CpuWriteWaitsForTheThirdEdgeAndIsMadeTwoLater) {
   cpu_start_write(6, 0x4321);
   for (int tick = 0; tick < 3; ++tick) {
@@ -403,6 +413,21 @@ TEST_F(DpramTest, ResetKeepsTheContent) {
   EXPECT_EQ(host_read(100), 0xCAFEu);
 }
 
+// docs/dpram.md: nobody shows the word of a read of before.
+TEST_F(DpramTest, BothSidesShowZeroAfterAReset) {
+  host_write(6, 0x1234);
+  EXPECT_EQ(cpu_read(6), 0x1234u);
+  EXPECT_EQ(host_read(6), 0x1234u);
+  both.in.rd_falls = both.in.wr_falls = 0;
+  both.reset();
+  for (int tick = 0; tick < 6; ++tick) {
+    EXPECT_EQ(both.get("cpu_rdata"), 0u) << tick;
+    EXPECT_EQ(both.get("mem_rdata"), 0u) << tick;
+    both.tick();
+  }
+  EXPECT_EQ(host_read(6), 0x1234u);
+}
+
 // The cells are there, and hold something before the strap says that they are not.
 TEST_F(DpramSmallTest, WordsThatAreNotFittedReadZeroAndIgnoreWrites) {
   const auto strap = [this](bool is_small) {
@@ -429,6 +454,19 @@ TEST_F(DpramSmallTest, WordsThatAreNotFittedReadZeroAndIgnoreWrites) {
   }
   EXPECT_EQ(host_read(8191), 0x7777u);
   EXPECT_EQ(cpu_read(0), 0u) << "no alias";
+}
+
+TEST_F(DpramSmallTest, WordOfAReadStaysThroughWritesBeyondTheFittedSize) {
+  host_write(5, 0x1111);
+  for (const unsigned word : {5u, 9000u}) {
+    const unsigned value = word == 5 ? 0x1111 : 0;
+    EXPECT_EQ(cpu_read(word), value);
+    EXPECT_EQ(host_read(word), value);
+    cpu_write(9005 - word, 0x2222);
+    host_write(9005 - word, 0x2222);
+    EXPECT_EQ(both.get("cpu_rdata"), value);
+    EXPECT_EQ(both.get("mem_rdata"), value);
+  }
 }
 
 TEST_F(DpramSmallTest, RandomAccessesAgree) {

@@ -73,6 +73,7 @@ TEST_F(IsaSlaveTest, IoReadDataIsThereWithin120NanosecondsAndGoesWithTheCommand)
     EXPECT_LE(valid, within(120)) << "t4 as aimed for";
     EXPECT_LE(valid, 8) << "the third clk_ref edge at the latest";
     EXPECT_EQ(bus_data(), 0xFFA2u) << "an I/O byte is on the low lane";
+    EXPECT_EQ(both.get("isa_sd"), 0xFFA2u) << "and ones where nobody drives";
     ticks(60);
     EXPECT_EQ(bus_data(), 0xFFA2u);
     both.in.isa_ior_n = true;

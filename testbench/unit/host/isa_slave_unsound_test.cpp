@@ -1,5 +1,7 @@
 // The ISA slave where a host keeps no rule (host-bus:3.9) or is reset in mid-cycle (host-bus:3.8): nothing happens that
 // was not asked for, and the next cycle is one again.
+#include <map>
+
 #include "testbench/unit/host/isa_slave_fixture.h"
 
 namespace brick {
@@ -109,6 +111,21 @@ TEST_F(IsaSlaveTest, AddressThatMovesDuringACycleIsNotLookedAt) {
   both.in.isa_iow_n = true;
   ticks(12);
   EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_wr", 7, 0x41}}));
+  set_address(0xD0010);
+  both.in.isa_sbhe_n = false;
+  both.in.mem_rdata = 0x1234;
+  ticks(11);
+  both.in.isa_memr_n = false;
+  ticks(12);
+  set_address(0x21B);
+  both.in.isa_sbhe_n = true;
+  for (int n = 0; n < 16; ++n) {
+    EXPECT_EQ(both.get("isa_sd_oe"), 3u) << "both lanes, as at its start";
+    EXPECT_EQ(both.get("isa_sd"), 0x1234u);
+    tick();
+  }
+  both.in.isa_memr_n = true;
+  ticks(12);
 }
 
 TEST_F(IsaSlaveTest, CommandThatWasLowAtAResetDoesNothing) {
@@ -139,6 +156,60 @@ TEST_F(IsaSlaveTest, CommandThatWasLowAtAResetDoesNothing) {
   }
   io_write(0x217, 1);
   EXPECT_EQ(strobes.size(), 1u);
+}
+
+// docs/isa_slave.md: in a reset all ports are at rest, though no clock comes, and behind it they show what comes of the
+// pins since then, whatever was before: here a command that was low, LA that stood, and page 0.
+TEST_F(IsaSlaveTest, AResetLeavesNothingOfBefore) {
+  const std::map<std::string_view, unsigned> let_go{{"isa_sd", 0xFFFF}, {"isa_iochrdy", 1}, {"isa_memcs16_n", 1}};
+  const struct {
+    bool Inputs::*command;
+    unsigned address, window;
+    bool slot8;
+  } cycles[] = {{&Inputs::isa_ior_n, 0x217, 0xD4000, false},
+                {&Inputs::isa_iow_n, 0x21A, 0xD4000, true},
+                {&Inputs::isa_memr_n, 0xD5556, 0xD4000, true},
+                {&Inputs::isa_memw_n, 0xD5555, 0xD4000, false},
+                {&Inputs::isa_memr_n, 0x01555, 0x00000, false}};
+  const auto look = [&] {
+    Outputs shown = show(model);
+    for (auto& [name, value] : shown) value = both.get(name);
+    return shown;
+  };
+  std::vector<Outputs> first;
+  for (const auto& cycle : cycles) {
+    SCOPED_TRACE(cycle.address);
+    both.in = Inputs();
+    both.in.window_flat = false;
+    both.in.window = static_cast<std::uint16_t>(cycle.window >> 14);
+    both.in.slot8 = cycle.slot8;
+    ticks(12);
+    io_write(0x21C, 3);
+    set_address(cycle.address);
+    both.in.isa_sd = both.in.mem_rdata = 0xABCD;
+    ticks(11);
+    both.in.*cycle.command = false;
+    at_phase(0);
+    both.reset();
+    both.in = Inputs();
+    both.in.window_flat = false;
+    both.in.window = 0xD4000 >> 14;
+    both.in.isa_la = 0xD4000 >> 17;
+    both.in.isa_memw_n = false;
+    both.in.isa_sd = 0x1234;
+    for (const auto& [name, value] : look()) EXPECT_EQ(value, let_go.count(name) != 0 ? let_go.at(name) : 0u) << name;
+    for (std::size_t n = 0; n < 20; ++n) {
+      if (n == 8) both.in.isa_memw_n = true;
+      tick();
+      if (first.size() == n) first.push_back(look());
+      EXPECT_EQ(look(), first[n]) << "tick " << n;
+      if (n >= 2) { EXPECT_EQ(both.get("isa_memcs16_n"), 0u) << "LA has passed its three flip-flops"; }
+    }
+    EXPECT_EQ(both.get("mem_wdata"), 0x1234u);
+    strobes.clear();
+    mem_write(0xD4010, 0x11);
+    EXPECT_EQ(strobes, (std::vector<Strobe>{{"mem_wr", 0x10 / 2, 1u << 16 | 0x11}}));
+  }
 }
 
 // RESETDRV that begins before a command ends makes its write void; one that begins 17 ns after it, or later, does not.
