@@ -66,7 +66,8 @@ static bool rotation(const struct circle_line* line, double axis[CIRCLE_AXES]) {
   return true;
 }
 
-/* Of `chord`, which lies in the plane: the centre is to its left for the short way. */
+/* Of `chord`, which lies in the plane: the centre is to its left for the short way, half a turn at most. However short
+ * that is, the angle is right: not from directions, whose rounding could make a turn of it. */
 static enum circle_kind centre_by_radius(const struct circle_line* line, const double axis[CIRCLE_AXES],
                                          const double chord[CIRCLE_AXES], struct circle* c) {
   const double size = length(chord), radius = math_absolute(line->radius), half = size / 2.0;
@@ -76,9 +77,15 @@ static enum circle_kind centre_by_radius(const struct circle_line* line, const d
   go(line->start, 0.5, chord, c->centre);
   slice_pause();
   const double excess = size - radius - radius;
+  c->angle = PI;
   if (excess > 0.0) return line->most > 0.0 && excess > line->most ? CIRCLE_IMPOSSIBLE : CIRCLE_ARC;
   cross(axis, chord, left);
-  const double height = math_square_root(radius * radius - half * half) / size;
+  const double beside = math_square_root(radius * radius - half * half);
+  slice_pause();
+  const double height = beside / size;
+  slice_pause();
+  c->angle = 2.0 * math_arc_tangent2(half, beside, false);
+  if (line->radius < 0.0) c->angle = TURN - c->angle;
   slice_pause();
   go(c->centre, line->radius > 0.0 ? height : -height, left, c->centre);
   return CIRCLE_ARC;
@@ -115,13 +122,14 @@ static enum circle_kind turn(const struct circle_line* line, const double axis[C
     slice_pause();
   }
   cross(axis, c->first, c->second);
+  /* The centre may lie anywhere along the axis: the arc begins at the start. */
+  go(line->start, -start, c->first, c->centre);
+  if (line->by_radius) return CIRCLE_ARC; /* its angle is known */
   const double across = product(to_end, c->second), straight = product(to_end, c->first);
   c->angle = math_arc_tangent2(across, straight, false);
   slice_pause();
   if (c->angle < 0.0) c->angle += 2.0 * PI;
   if (c->angle < smallest * PI) c->angle += 2.0 * PI;
-  /* The centre may lie anywhere along the axis: the arc begins at the start. */
-  go(line->start, -start, c->first, c->centre);
   return CIRCLE_ARC;
 }
 

@@ -18,7 +18,7 @@ struct circle_line {
   double radius; /* R; below 0: the long way */
   double normal[CIRCLE_AXES];
   bool counter; /* CIRCLE2 */
-  double least; /* Isx97: of pi; a shorter arc gets a turn more. 0: 2^-20 */
+  double least; /* Isx97: of pi; a shorter arc by I, J, K gets a turn more. 0: 2^-20 */
   double most;  /* Isx96: by which the ends may be further apart than 2 R. 0: no limit */
 };
 

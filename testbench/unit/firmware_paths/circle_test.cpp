@@ -133,6 +133,21 @@ TEST(Circle, RadiusTakesTheShortOrTheLongWay) {
   expect_at(c, 0.5, {std::sqrt(0.5), 1 - std::sqrt(0.5), 0});  // counter-clockwise about (0, 1)
 }
 
+// R is the short way, 2 asin(chord / 2 R), or the rest of a turn: whatever Isx97 is, and however it is rounded.
+TEST(Circle, AShortArcByRadiusStaysShort) {
+  circle c;
+  for (const double isx97 : {0.0, 0.01})
+    for (const auto& [chord, radius] : {std::pair{1e-3, 1e3}, {1.0, 100.0}, {1e-3, 1e9}, {1e-6, 1e12}})
+      for (const double sign : {1.0, -1.0}) {
+        circle_line line = with_radius(line_of({7, 4, 0}, {7 + chord * 0.6, 4 + chord * 0.8, 0}), sign * radius);
+        line.least = isx97;
+        const double half = std::hypot(line.end[0] - line.start[0], line.end[1] - line.start[1]) / 2;
+        const double angle = 2 * std::asin(half / radius);
+        ASSERT_EQ(circle_of(&line, &c), CIRCLE_ARC);
+        EXPECT_NEAR(c.angle, sign > 0 ? angle : 2 * kPi - angle, 1e-9 * angle + 4e-15 * (sign < 0)) << radius;
+      }
+}
+
 // Isx96: how much further apart than 2 R the ends may be.
 TEST(Circle, EndsTooFarForTheRadius) {
   circle c;
