@@ -18,6 +18,7 @@ void coordinate_systems_initialize(void) {
     *s = (struct coordinate_system){0};
     s->feedrate_axes = AXIS_XYZ;
     s->normal[2] = -1.0;
+    s->segment_override = SEGMENT_OVERRIDE_ONE;
     piece_ring_initialize(&s->ring, cubics, MOTORS);
     s->increment_full = s->increment_command = i_integer(I10_SERVO_PERIOD);
     s->increment = s->increment_target = s->increment_full;

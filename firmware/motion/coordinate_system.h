@@ -46,6 +46,7 @@ enum move_kind {
 };
 
 enum { KNOTS = 4 };
+enum { SEGMENT_OVERRIDE_ONE = 1 << 30 }; /* Isx15 = 0 */
 
 /* Where the axes are, and their velocities a ms, between two cubics. */
 struct knot {
@@ -175,6 +176,7 @@ struct coordinate_system {
   enum corner_stop corner;     /* R */
   uint32_t corner_began;       /* R: real-time interrupt */
   enum run_time_error failure; /* R: found while a move waited to be placed */
+  uint32_t segment_override;   /* R: Isx15 as the last segment had it; no end of a sequence or program changes it */
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
   volatile int32_t increment_target; /* B */

@@ -13,8 +13,8 @@
 
 enum { LAST_POINTS = 3 }; /* the first and the last point of a sequence stand so often */
 
-#define TIME_TOLERANCE 4295     /* 1e-6 ms, by which a point may be before the end and still be it */
-#define OVERRIDE_ONE (1u << 30) /* Isx15 = 0 */
+#define TIME_TOLERANCE 4295 /* 1e-6 ms, by which a point may be before the end and still be it */
+#define OVERRIDE_ONE ((uint32_t)SEGMENT_OVERRIDE_ONE)
 
 /* The control point of every motor at a place of the path; the older ones move up. */
 static void add_points(uint32_t cs, const struct path_point* point) {
@@ -79,7 +79,6 @@ bool segment_points_begin(uint32_t cs) {
   const int32_t period = i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME));
   q->period = (int64_t)(period > 0 ? period : 1) << TRAJECTORY_FRACTION_BITS;
   set_ahead(q, (uint32_t)(period > 0 ? period : 1));
-  q->override = OVERRIDE_ONE;
   slice_pause();
   piece_set_time(&q->timed, q->period);
   q->timed.continues = false;
@@ -117,7 +116,7 @@ static uint32_t override_given(double isx15) {
 
 /* As Isx15 has it for the next segment: it goes to a new value by Isx16 a segment. */
 static uint32_t override_of(uint32_t cs) {
-  const uint32_t present = sequences[cs].override;
+  const uint32_t present = coordinate_systems[cs].segment_override;
   const uint32_t wanted = override_given(i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE)));
   if (present == wanted) return wanted;
   const double isx16 = i_variable_read(i_cs_real(cs, ISX16_SEGMENT_OVERRIDE_SLEW));
@@ -213,7 +212,7 @@ static void make_point(uint32_t cs, int64_t time, uint32_t override) {
   while (ahead + 1u < q->joined && time >= path_begins(p, ahead + 1u)) ahead++;
   set_move(cs, ahead);
   q->time = time;
-  q->override = override;
+  coordinate_systems[cs].segment_override = override;
   slice_pause();
   use_point(cs);
 }

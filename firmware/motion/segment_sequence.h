@@ -36,7 +36,6 @@ struct sequence {
   uint32_t unhanded;    /* pieces behind those that the servo task has */
   int64_t period;       /* Isx13 */
   uint32_t least, most; /* pieces ahead of the servo task: what is SHORT_MS, and all that are made */
-  uint32_t override;    /* as it is now */
   int64_t time;         /* of the last point, as path.h has it */
   struct piece timed;   /* a piece of that period */
   uint32_t under_way;   /* moves of the queue that have begun at the last point, less one */

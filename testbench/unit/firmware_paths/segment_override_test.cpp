@@ -78,12 +78,45 @@ TEST_F(SegmentOverride, OnTheWayInLookahead) {
 // Isx16: from 1 on by 0.05 a segment. Ten segments of 1.05 to 1.5 are 63.75 ms of 120, then 8 of 7.5; of 0.95 to 0.5
 // they are 36.25, then 34 of 2.5.
 TEST_F(SegmentOverride, IsSlewed) {
-  fit({"1000X"});
-  store({"TM100 TA20 TS0 INC", "X3"});
   for (const auto& [isx15, segments] : {std::pair{"0.5", 18}, {"-0.5", 44}}) {
+    platform::power_up();
+    fit({"1000X"});
+    store({"TM100 TA20 TS0 INC", "X3"});
     ASSERT_EQ(host(std::string("I5113=5 I5116=0.05 I5115=") + isx15), "");
     EXPECT_NEAR(run(), 5 * (segments + 2), kTickMs) << isx15;
   }
+}
+
+// What it has come to is where the next sequence begins, of the same program or another, behind an abort too; a reset
+// alone makes it 1. From 1.5 twenty segments of 1.45 to 0.5 are 97.5 ms of 120, then 9 of 2.5; at 0.5 there are 48, a
+// DWELL behind the first.
+TEST_F(SegmentOverride, GoesOnFromSequenceToSequence) {
+  fit({"1000X"});
+  store({"TM100 TA20 TS0 INC", "X3"});
+  ASSERT_EQ(host("I5113=5 I5116=0.05 I5115=0.5"), "");
+  EXPECT_NEAR(run(), 5 * (18 + 2), kTickMs);
+  ASSERT_EQ(host("I5115=-0.5"), "");
+  EXPECT_NEAR(run(), 5 * (29 + 2), kTickMs);
+  store({"X3", "DWELL50", "X3"}, 2);
+  const double both = run([](double) {}, "&1B2R");
+  EXPECT_GE(both, 2 * 5 * (48 + 2) + 50);
+  EXPECT_LT(both, 2 * 5 * (48 + 2) + 50 + 20) << "what lies between them is not by segments";
+
+  ASSERT_EQ(host("I5115=-1 I5116=0 &1B1R"), "");
+  platform::servo_ticks(ticks_of(100));
+  const std::int64_t stands = motors[0].trajectory;
+  ASSERT_EQ(host("&1A I5116=0.01"), "");
+  platform::servo_ticks(ticks_of(100));
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(1000));
+  EXPECT_EQ(motors[0].trajectory, stands) << "from 0 to 0";
+  EXPECT_TRUE(run_is_running(0));
+
+  platform::reset();
+  fit({"1000X"});
+  store({"TM100 TA20 TS0 INC", "X3"});
+  ASSERT_EQ(host("I5113=5 I5116=0.05 I5115=0.5"), "");
+  EXPECT_NEAR(run(), 5 * (18 + 2), kTickMs);
 }
 
 }  // namespace
