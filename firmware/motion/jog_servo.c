@@ -60,10 +60,17 @@ static void found(uint32_t motor, int64_t position) {
   jog_post(motor, &then);
 }
 
+/* A move of its system has come to its end for this motor, for others it may go on; what no program of its own system
+ * has moved is away from there. */
+static void arrives(struct motor* m) {
+  if (coordinate_systems[m->cs].active) m->of_system = m->trajectory;
+}
+
 static __attribute__((noinline)) void over(uint32_t motor) {
   struct jog* j = &jogs[motor];
   struct motor_status_flags* status = &motors[motor].status;
   motors[motor].path = PATH_STANDS;
+  if (jog_now(j)->by_program) arrives(&motors[motor]);
   status->timed_move = status->aborting = status->home_search = false;
   jog_rests(j);
   if (!j->ready && (jogs_asked & jog_bit(motor)) == 0u) jogs_busy &= ~jog_bit(motor);

@@ -95,6 +95,81 @@ TEST_F(ProgramsAndJogs, ASearchOfAProgramThatIsHeldGoesOn) {
   EXPECT_EQ(motors[0].trajectory, position(1000));
 }
 
+// motion:5.6/2, motion:5.6/4: a motor that has come to its end already is where it was stopped, until it is jogged
+// away.
+TEST_F(ProgramsAndJogs, AHeldMoveOfWhichOneMotorHasArrivedGoesOn) {
+  for (const bool homes : {false, true}) {
+    SCOPED_TRACE(homes);
+    platform::power_up();
+    fit({"1000X", "1000Y"});
+    quick(1);
+    quick(2);
+    ASSERT_EQ(host("I5179=1 I5195=200000 I5194=200000 I123=15 I125=$78000 I124=$120001 I126=0"), "");
+    ASSERT_EQ(host("I223=15 I225=$78008 I224=$120001 I226=0"), "");
+    store({homes ? "HOME1,2" : "RAPID X1 Y10", "LINEAR TM100 TA20 TS0 X2 Y11"});
+    begin();
+    ticks(homes ? 50 : 100);
+    if (homes) capture(0);
+    ticks(150);
+    ASSERT_FALSE(jog_is_moving(0));
+    ASSERT_EQ(motors[0].trajectory, position(homes ? 0 : 1000));
+    ASSERT_TRUE(jog_is_moving(1));
+    ASSERT_EQ(host("&1H"), "");
+    ticks(50);
+    EXPECT_EQ(host("#2J:100"), "ERR001");
+    jog("#1J:100", homes ? 100 : 1100);
+    EXPECT_EQ(host("&1R"), "ERR017");
+    jog("#1J=", homes ? 0 : 1000);
+    ASSERT_EQ(host("&1R"), "");
+    ticks(60);
+    EXPECT_NEAR(speed(2), homes ? 15.0 : 20.0, 0.1);
+    if (homes) *hal_x(kStatus + 8) |= kCaptureFlag;
+    end();
+    EXPECT_EQ(motors[0].trajectory, position(2000));
+    EXPECT_EQ(motors[1].trajectory, position(11000));
+  }
+}
+
+// motion:5.6/4: what the program of another system homes is not where this one's was stopped.
+TEST_F(ProgramsAndJogs, HomeByAnotherSystemIsAWay) {
+  fit({"1000X"});
+  quick();
+  ASSERT_EQ(host("I123=15 I125=$78000 I124=$120001 I126=0"), "");
+  store({"INC TM100 TA20 TS0 X1", "X1", "X1"});
+  store({"HOME1"}, 2);
+  begin();
+  ticks(30);
+  ASSERT_EQ(host("&1Q"), "");
+  end();
+  ASSERT_EQ(host("&2B2R"), "");
+  ticks(100);
+  capture(0xFFFFFF);
+  ticks(300);
+  ASSERT_TRUE(motors[0].status.home_complete);
+  ASSERT_FALSE(run_is_running(1));
+  EXPECT_EQ(host("&1R"), "ERR017");
+}
+
+// motion:5.6/4 behind Q, which does not stop a RAPID move.
+TEST_F(ProgramsAndJogs, WhereARapidMoveEndsIsWhereQLeavesIt) {
+  fit({"1000X", "1000Y"});
+  quick(1);
+  quick(2);
+  store({"RAPID X1 Y2", "LINEAR TM100 TA20 TS0 X2 Y11"});
+  begin();
+  ticks(70);
+  ASSERT_EQ(host("&1Q"), "");
+  end();
+  EXPECT_EQ(motors[1].trajectory, position(2000));
+  jog("#1J:100", 1100);
+  EXPECT_EQ(host("&1R"), "ERR017");
+  jog("#1J=", 1000);
+  ASSERT_EQ(host("&1R"), "");
+  end();
+  EXPECT_EQ(motors[0].trajectory, position(2000));
+  EXPECT_EQ(motors[1].trajectory, position(11000));
+}
+
 // motion:5.5/4: the program waits until the motor stands at its home, and goes on from there.
 TEST_F(ProgramsAndJogs, HomeInAProgramIsZeroOfTheAxis) {
   fit({"1000X"});
