@@ -17,7 +17,8 @@ struct reply_lines { /* `code`: a DPRAM_RESPONSE_... */
 };
 extern const struct reply_lines reply_lines; /* the port that takes lines (image/tables.c) */
 
-extern void (*const reply_between_lines)(void); /* a line of many reports may take seconds (image/tables.c) */
+/* A line of many reports or assignments may take seconds: called behind each of them (image/tables.c). */
+extern void (*const reply_between_lines)(void);
 
 /* For whom what follows is, which says where it goes and its form: a command's answer, that of a program's command, and
  * through the dual-ported RAM also its texts. */

@@ -115,6 +115,7 @@ static error_t assign_range(struct lexer* lx, char letter, const struct range* r
   for (uint32_t i = 0; i < range->count; ++i) {
     const uint32_t number = range->first + i * range->step;
     assign(letter, number, defaults ? i_variable_default(number) : value);
+    reply_between_lines();
   }
   return ERR_NONE;
 }
@@ -125,10 +126,12 @@ static error_t definition_command(struct lexer* lx, const struct range* range) {
   const error_t error = m_definition_read(lx, &definition, &defines);
   for (uint32_t i = 0; error == ERR_NONE && i < range->count; ++i) {
     const uint32_t number = range->first + i * range->step;
-    if (defines)
-      m_variable_define(number, &definition);
-    else
+    if (!defines) {
       m_definition_report(number);
+      continue;
+    }
+    m_variable_define(number, &definition);
+    reply_between_lines();
   }
   return error;
 }

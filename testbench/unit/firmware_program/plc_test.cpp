@@ -321,6 +321,20 @@ TEST_F(Plc, ReturnEndsTheScan) {
   EXPECT_EQ(host("P1 P2"), "5|2");
 }
 
+// One ms from variable to variable: PLCs have a turn every 5 ms, as between lines of an answer (firmware:8.3/6).
+TEST_F(Plc, GoOnWhileALineAssignsManyVariables) {
+  load(1, {"P8000=P8000+1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1"), "");
+  for (const char* line : {"I8000..8191=$78000", "I100,192=*", "P0..191=1", "M0..191->*", "M0..191->"}) {
+    ASSERT_EQ(host("P8000=0"), "");
+    fake_hal_set_look(hal_cycles_per_ms());
+    (void)host(line);
+    fake_hal_set_look(100);
+    EXPECT_GE(p(8000), 192 / 8) << line;
+    EXPECT_LE(p(8000), 192 / 5) << line;
+  }
+}
+
 // Isx11 loses one a servo interrupt: 30 of them are over after 30 (firmware:8.1).
 TEST_F(Plc, TimerHoldsALoop) {
   load(1, {"P1=P1+1", "I5111=30", "WHILE(I5111>0)", "ENDWHILE", "P2=P2+1", "I5212=12", "WHILE(I5212>0)", "ENDWHILE",
