@@ -108,6 +108,20 @@ double math_scale(double m, int exponent) {
   return b.value;
 }
 
+/* |x| < 2^this. */
+static int magnitude(double x) {
+  const union bits b = {x};
+  return (int)((b.word >> FRACTION_BITS) & 0x7FFu) - (EXPONENT_BIAS - 1);
+}
+
+double math_bitwise(enum math_bits operation, double a, double b) {
+  enum { BELOW = 61 };
+  const int of_a = magnitude(a), of_b = magnitude(b), larger = of_a > of_b ? of_a : of_b;
+  const int64_t x = math_to_integer(math_scale(a, BELOW - larger)), y = math_to_integer(math_scale(b, BELOW - larger));
+  const int64_t both = operation == MATH_AND ? x & y : operation == MATH_OR ? x | y : x ^ y;
+  return math_scale((double)both, larger - BELOW);
+}
+
 /* A product or a division takes some 400 cycles: no more than one of them from pause to pause. */
 static double paused(double value) {
   mathematics_pause();

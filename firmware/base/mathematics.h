@@ -29,6 +29,10 @@ double math_modulo(double a, double b); /* [0, b), or [-n, n) for b = -n */
 int64_t math_to_integer(double x);      /* floor, saturating at +-2^62 */
 int64_t math_nearest(double x);         /* halves away from 0, saturating at +-2^47; what is no number too */
 
+/* Of two's complements with their fractions, 61 bits below the larger operand. */
+enum math_bits { MATH_AND, MATH_OR, MATH_XOR };
+double math_bitwise(enum math_bits operation, double a, double b);
+
 bool math_is_finite(double x);
 double math_scale(double m, int exponent); /* m * 2^exponent, 0 on underflow */
 

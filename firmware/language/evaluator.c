@@ -59,11 +59,11 @@ static double operator_binary(uint32_t code, double a, double b) {
     case OPERATOR_MODULO:
       return math_modulo(a, b);
     case OPERATOR_AND:
-      return (double)(math_to_integer(a) & math_to_integer(b));
+      return math_bitwise(MATH_AND, a, b);
     case OPERATOR_OR:
-      return (double)(math_to_integer(a) | math_to_integer(b));
+      return math_bitwise(MATH_OR, a, b);
     default:
-      return (double)(math_to_integer(a) ^ math_to_integer(b));
+      return math_bitwise(MATH_XOR, a, b);
   }
 }
 

@@ -135,20 +135,18 @@ void synchronous_move_time(uint32_t cs) {
 }
 
 static void assign(const struct assignment* a) {
-  const int64_t operand = math_to_integer(a->value);
   if (a->action == MOVE_TIME) {
-    i_timer_write(i_cs(a->number, ISX11_TIMERS), (int32_t)operand);
+    i_timer_write(i_cs(a->number, ISX11_TIMERS), (int32_t)math_to_integer(a->value));
     return;
   }
   if (a->action == SYNCHRONOUS_SET) {
     m_variable_write(a->number, a->value);
     return;
   }
-  const int64_t old = math_to_integer(m_variable_read(a->number));
-  const int64_t both = a->action == SYNCHRONOUS_AND  ? old & operand
-                       : a->action == SYNCHRONOUS_OR ? old | operand
-                                                     : old ^ operand;
-  m_variable_write(a->number, (double)both);
+  const enum math_bits operation = a->action == SYNCHRONOUS_AND  ? MATH_AND
+                                   : a->action == SYNCHRONOUS_OR ? MATH_OR
+                                                                 : MATH_XOR;
+  m_variable_write(a->number, math_bitwise(operation, m_variable_read(a->number), a->value));
 }
 
 /* Its move has started, or nothing is left that could start: the last ones are made too. */

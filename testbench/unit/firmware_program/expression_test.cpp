@@ -45,6 +45,26 @@ TEST_F(Expression, PrecedenceAndOrder) {
   EXPECT_EQ(value("-1&$FF"), 255.0);
 }
 
+// In binary 0.875 is 0.111, 1.75 is 1.11, -0.25 ...11.11 and -1 ...11.00 (firmware:1.7/2).
+TEST_F(Expression, BitOperatorsTakeTheFractionToo) {
+  EXPECT_EQ(value("0.875&1.75"), 0.75);
+  EXPECT_EQ(value("1.5|0.25"), 1.75);
+  EXPECT_EQ(value("2.5^0.75"), 2.25);
+  EXPECT_EQ(value("-0.25&1.5"), 1.5);
+  EXPECT_EQ(value("-0.25|0.5"), -0.25);
+  EXPECT_EQ(value("-1^0.25"), -0.75);
+  EXPECT_EQ(value("-1&5.75"), 5.0);
+  EXPECT_EQ(value("P1|P2"), 0.0) << "0 and 0";
+  for (const double each : {1.0 / 3.0, -1.0 / 3.0, 34359738367.5, -34359738367.5, 1.0e-6, 140737488355328.0}) {
+    p_variable_write(1, each);
+    const double kept = p_variable_read(1);
+    EXPECT_EQ(value("P1&P1"), kept) << each;
+    EXPECT_EQ(value("P1|0"), kept) << each;
+    EXPECT_EQ(value("0^P1"), kept) << each;
+    EXPECT_EQ(value("P1^P1"), 0.0) << each;
+  }
+}
+
 TEST_F(Expression, VariablesAndComputedIndex) {
   p_variable_write(1, 3.0);
   p_variable_write(30, 4.5);

@@ -87,6 +87,16 @@ TEST_F(MotionProgram, SynchronousAssignmentsAreMadeWhenTheNextMoveStarts) {
   EXPECT_EQ(host("M1"), "9") << "no move comes any more";
 }
 
+// 0.875 & 1.75, 2.5 | 0.25, 2.5 ^ 0.75 (firmware:1.7/2).
+TEST_F(MotionProgram, SynchronousBitOperatorsTakeTheFractionToo) {
+  ASSERT_EQ(host("M1->L:$10F0 M2->L:$10F1 M3->L:$10F2 M1=.875 M2=2.5 M3=2.5"), "");
+  store(1, {"TM10 TA10 TS0 X1 M1&=1.75 M2|=.25 M3^=.75"});
+  ASSERT_EQ(host("B1R"), "");
+  ASSERT_TRUE(finish());
+  platform::real_time();
+  EXPECT_EQ(host("M1..3"), "0.75|2.75|2.25");
+}
+
 TEST_F(MotionProgram, MoreSynchronousAssignmentsThanFitAreARunTimeError) {
   Lines lines(32, "M1==P1");
   store(1, lines);
