@@ -63,3 +63,5 @@ double float48_unpack(struct float48 word) {
   u.bits |= ((uint64_t)exponent << 52) | (magnitude & 0xFFFFFFFFFFFFFull);
   return u.value;
 }
+
+double float48_round(double value) { return float48_unpack(float48_pack(value)); }

@@ -9,5 +9,6 @@ struct float48 {
 };
 struct float48 float48_pack(double value);
 double float48_unpack(struct float48 word);
+double float48_round(double value); /* to what the word holds of it */
 
 #endif

@@ -2,13 +2,14 @@
  * until one does. A constant that no text can have come from, in a damaged buffer, is shown with all decimals. */
 #include "firmware/language/constant_text.h"
 
+#include "firmware/base/float48.h"
 #include "firmware/language/lexer.h"
 
 static const double MOST = 1e18, EXACT = 9007199254740992.0; /* 2^53: from here on doubles are further apart than 1 */
 
 static bool reads_as(const struct instruction* in, double value, uint64_t digits, unsigned decimals) {
   const double read = lexer_decimal(digits, decimals);
-  if (in->operation != OP_AXIS && in->operation != OP_RATE) return read == value;
+  if (in->operation != OP_AXIS && in->operation != OP_RATE) return float48_round(read) == value;
   const struct instruction wanted = {OP_AXIS, 0, 0, value}, found = {OP_AXIS, 0, 0, read};
   return word_encode(&wanted) == word_encode(&found);
 }

@@ -3,6 +3,7 @@
 #include "firmware/language/expression.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/base/float48.h"
 #include "firmware/language/evaluator.h"
 #include "firmware/language/operators.h"
 
@@ -59,7 +60,9 @@ static error_t emit(struct compiler* c, enum operation operation, uint32_t group
 
 static error_t grow(struct compiler* c) { return ++c->depth > EXPRESSION_DEPTH ? ERR_DATA : ERR_NONE; }
 
-error_t word_list_add_constant(struct word_list* list, double value, bool hexadecimal) {
+/* As a variable keeps it, so that IF(P1=0.1) finds what P1=0.1 has stored. */
+error_t word_list_add_constant(struct word_list* list, double exact, bool hexadecimal) {
+  const double value = float48_round(exact);
   struct instruction in = {OP_PUSH, hexadecimal, 0, value};
   if (word_holds_exactly(value)) return word_list_add_instruction(list, &in);
   const word48_t form = hexadecimal ? WORD_DOUBLE_HEXADECIMAL : 0;

@@ -23,7 +23,7 @@ const char* expression_operator_name(uint32_t code); /* of an operator or functi
 error_t expression_compile(struct lexer* lx, bool bracketed, struct word_list* out);
 /* ERR_DATA when the list is full: line too long. */
 error_t word_list_add_instruction(struct word_list* list, const struct instruction* in);
-error_t word_list_add_constant(struct word_list* list, double value, bool hexadecimal);
+error_t word_list_add_constant(struct word_list* list, double exact, bool hexadecimal); /* rounded to a 48-bit float */
 error_t word_list_add(struct word_list* list, word48_t word);
 
 #endif

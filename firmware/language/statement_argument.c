@@ -3,6 +3,7 @@
 #include "firmware/language/statement_argument.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/base/float48.h"
 #include "firmware/language/statement_list.h"
 
 static bool is_code(const struct statement_row* row, uint32_t code1, uint32_t code2) {
@@ -30,11 +31,10 @@ static bool is_in_range(const struct statement_row* row, double value) {
 
 /* An axis or rate holds its constant in 33 bits, another statement in 24; else the value is pushed before it. */
 static error_t add_constant(const struct statement_row* row, double value, bool hexadecimal, struct word_list* out) {
-  struct instruction in = {OP_STATEMENT, hexadecimal, row->code, value};
+  struct instruction in = {OP_STATEMENT, hexadecimal, row->code, float48_round(value)};
   if (has_wide_form(row)) {
-    in.operation = is_code(row, 1, 0) ? OP_AXIS : OP_RATE;
-    in.number = code_number(row);
-  } else if (hexadecimal || !word_holds_short(value)) {
+    in = (struct instruction){is_code(row, 1, 0) ? OP_AXIS : OP_RATE, hexadecimal, code_number(row), value};
+  } else if (hexadecimal || !word_holds_short(in.value)) {
     const error_t error = word_list_add_constant(out, value, hexadecimal);
     if (error != ERR_NONE) return error;
     in.operation = OP_STATEMENT_POP;

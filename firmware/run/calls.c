@@ -6,7 +6,7 @@
 #include "firmware/language/statement_argument.h"
 #include "firmware/language/statement_key.h"
 
-#define LARGEST_CALL 32767.99999
+#define CALLS_END 32767.999995    /* behind label 99999 of PROG 32767, of which a 48-bit float has twenty bits */
 #define LABELS_A_PROGRAM 100000.0 /* CALL 3.025: label 2500 */
 #define LABELS_A_CODE 1000.0      /* G17.1: label 17100 */
 
@@ -19,7 +19,7 @@ enum {
 };
 
 bool calls_split(double value, uint32_t* program, uint32_t* label) {
-  if (!(value >= 0.0) || value > LARGEST_CALL) return false;
+  if (!(value >= 0.0) || value >= CALLS_END) return false;
   *program = (uint32_t)value;
   *label = (uint32_t)((value - (double)*program) * LABELS_A_PROGRAM + 0.5);
   return true;
@@ -49,7 +49,7 @@ enum reader_result calls_find(uint32_t program, uint32_t label, uint32_t* offset
 
 /* G154 is CALL 1010.54. False: no such code. */
 static bool split_code(const struct instruction* in, uint32_t* program, uint32_t* label) {
-  if (!(in->value >= 0.0) || in->value > LARGEST_CALL) return false;
+  if (!(in->value >= 0.0) || in->value >= CALLS_END) return false;
   const uint32_t hundreds = (uint32_t)in->value / CODES_A_PROGRAM;
   *program = FIRST_CODE_PROGRAM + CODE_PROGRAM_STEP * hundreds + (in->number - KEY_G);
   *label = (uint32_t)((in->value - (double)(hundreds * CODES_A_PROGRAM)) * LABELS_A_CODE + 0.5);

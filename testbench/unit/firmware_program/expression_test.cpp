@@ -76,11 +76,20 @@ TEST_F(Expression, VariablesAndComputedIndex) {
   EXPECT_EQ(value("I(100+P1+10)+M70"), 21.0);
 }
 
-TEST_F(Expression, ConstantsAreKeptExactly) {
+// Of 35 bits and a sign: m / 2^35 x 2^e with m in [2^34, 2^35) (firmware:1.2/5), the nearest one.
+TEST_F(Expression, ConstantsAre48BitFloats) {
   for (const char* text :
-       {"0.1", "3.7", "1250.1", "34359738367.5", "0.9998474121", "123456789.123456", ".5", "007", "1.0000000001"})
-    EXPECT_EQ(value(text), std::strtod(text, nullptr)) << text;
+       {"0.1", "3.7", "1250.1", "34359738367.5", "0.9998474121", "123456789.123456", ".5", "007", "1.0000000001"}) {
+    const double exact = std::strtod(text, nullptr);
+    int exponent = 0;
+    const double mantissa = std::round(std::ldexp(std::frexp(exact, &exponent), 35));
+    EXPECT_EQ(value(text), std::ldexp(mantissa, exponent - 35)) << text;
+    EXPECT_EQ(value(std::string("-") + text), -std::ldexp(mantissa, exponent - 35)) << text;
+    p_variable_write(1, exact);
+    EXPECT_EQ(value(text), p_variable_read(1)) << "what a variable keeps of it: " << text;
+  }
   EXPECT_EQ(value("$FFFFFF"), 16777215.0);
+  EXPECT_EQ(value("$7FFFFFFFF"), 34359738367.0);
 }
 
 TEST_F(Expression, FunctionsInDegreesAndRadians) {
@@ -161,7 +170,7 @@ TEST_F(Expression, NothingInALineOf255CharactersIsTooDeep) {
   EXPECT_EQ(value(repeated("1+(", 63) + "1" + repeated(")", 63)), 64.0);
   EXPECT_EQ(value(repeated("-", 250) + "P1"), 0.0);
   EXPECT_EQ(value(repeated("1+", 127) + "1"), 128.0);
-  EXPECT_NEAR(value(repeated(".1+", 84) + ".1"), 8.5, 1e-12);
+  EXPECT_EQ(value(repeated(".5+", 84) + ".5"), 42.5);
   EXPECT_EQ(value(repeated("ABS(", 50) + "-3" + repeated(")", 50)), 3.0);
 }
 

@@ -129,7 +129,7 @@ TEST_F(Listing, ConstantsKeepTheirForm) {
     EXPECT_EQ(listed("I102=491522"), "I102=491522");
     EXPECT_EQ(listed("P1=-$1f*.125"), "P1=-$1F*0.125");
     EXPECT_EQ(listed("X0.1 Y-0.300 Z1234567890.5"), "X0.1Y-0.3Z1234567890.5");
-    EXPECT_EQ(listed("P1=0.123456789012345678"), "P1=0.12345678901234568");  // 17 digits name a double
+    EXPECT_EQ(listed("P1=0.123456789012345678"), "P1=0.123456789013");  // these name its 35 bits, 0.1234567890132
   }
 }
 

@@ -321,6 +321,15 @@ TEST_F(Plc, ReturnEndsTheScan) {
   EXPECT_EQ(host("P1 P2"), "5|2");
 }
 
+// A variable has 36 bits of 0.1, and so has the constant (firmware:1.2/6).
+TEST_F(Plc, AConstantIsEqualToTheVariableThatKeepsIt) {
+  load(1, {"P1=0.1", "P2=0", "IF(P1=0.1)", "AND(M1=-1234.567)", "P2=1", "ENDIF", "IF(P1<0.1)", "P2=2", "ENDIF",
+           "IF(P1>0.1)", "P2=3", "ENDIF"});
+  ASSERT_EQ(host("M1->L:$10F0 M1=-1234.567 I5=2 ENABLE PLC 1"), "");
+  background(1);
+  EXPECT_EQ(p(2), 1.0);
+}
+
 // One ms from variable to variable: PLCs have a turn every 5 ms, as between lines of an answer (firmware:8.3/6).
 TEST_F(Plc, GoOnWhileALineAssignsManyVariables) {
   load(1, {"P8000=P8000+1"});
