@@ -51,9 +51,9 @@ one process it counts when that test fails alone, too (seen of all rows but the 
 - **stale**, at the commit: the file has changed since it was judged.
 
 Not mutated: what is fixed before it runs (widths, parameters, generate blocks, sensitivity lists; initial values of
-static variables, labels, macros with arguments, what is `constexpr`); `board_sim` and the test bench; of the firmware
-what has no native build. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the
-options.
+static variables, labels, macros with arguments, what is `constexpr`); what is assigned to a net called `unused`, for
+the linters; `board_sim` and the test bench; of the firmware what has no native build. Which tests judge a module says
+`tools/mutate/modules.toml`. `./dev mutate --help` has the options.
 
 `./dev mutate again` builds twenty killed mutants once more, and each must die again: of one module, which is drawn from
 RTL and firmware, or of each that is named, of any kind. The test `mutation.killed_again` draws ten.

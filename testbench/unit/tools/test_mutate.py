@@ -70,6 +70,9 @@ module m #(parameter int Width = 4) (input wire logic clk_i, rst_ni, input wire 
     end
   end
   assign q = ~q_q;
+  logic unused, unused_top;
+  assign unused = &{1'b0, q_q[3]};
+  assign unused_top = &{1'b0, Top};
 endmodule
 """
 
@@ -101,6 +104,10 @@ class Places(unittest.TestCase):
         self.assertEqual(changes("statement"), [
             (12, "without state_d = Busy;"), (14, "without state_d = Idle;"), (15, "without q_d = {2{a_i[1:0]}};"),
             (24, "without q_q <= q_d;"), (25, "without state_q <= state_d;")])
+
+    def test_what_is_named_unused_is_no_place(self):
+        found = mutant.mutants_of("m.sv", MODULE, verilog.places(MODULE))
+        self.assertEqual([m.change for m in found if "unused" in m.text], [])
 
     def test_text_that_is_no_verilog_is_refused(self):
         with self.assertRaisesRegex(ValueError, "slang does not read it"):
