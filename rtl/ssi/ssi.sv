@@ -139,11 +139,10 @@ module ssi (
 
   // ------------------------------------------------------------------ reading
   logic [8:0] high_part;
+  assign high_part = high[9*channel+:9];
   always_comb begin
-    high_part = 9'h0;
-    rdata_o   = 24'h0;
+    rdata_o = 24'h0;
     if (hit) begin
-      high_part = high[9*channel+:9];
       case ({x_i, place})
         3'b100:  rdata_o = {8'h0, control[16*channel+:16]};
         3'b101:  rdata_o = {16'h0, refused[8*channel+:8]};

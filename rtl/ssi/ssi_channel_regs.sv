@@ -42,7 +42,7 @@ module ssi_channel_regs (
     end else begin
       // A single frame that begins at the edge of a write is the old word's: it clears nothing of the new one.
       shot_seen_q <= shot_i ^ (we_i & single_i);
-      if (we_i) word_q <= geo_i ? {4'h0, geo_gray, 7'h0, count_i[3:0]} : {flags_i, 4'h0, count_i};
+      if (we_i) word_q <= {flags_i[5:2], geo_i ? geo_gray : flags_i[1], flags_i[0], 4'h0, count_i};
       else if (shot_i != shot_seen_q) word_q[12] <= 1'b0;
       if (rd_a_i) high_q <= {parity_error_i, position_i};
     end
