@@ -29,69 +29,61 @@ module channel_capture (
   output logic [2:0]       hall_o
 );
 
-  logic        armed_q, captured_q, captured_gi_q, term_q;
+  logic        captured_q, captured_gi_q, term_q;
   logic [2:0]  hall_last_q, hall_q;
   logic [23:0] position_q;
   logic [11:0] fraction_q;
 
   // Gating without the index in the condition means an edge of U, V or W instead.
   logic index, flag, uses_index, hall_mode, term, trigger;
+  assign index = index_i ^ index_inv_i;
   always_comb begin
-    index      = 1'b0;
-    flag       = 1'b0;
+    case (flag_select_i)
+      brick_regs_pkg::FlagSelectHmfl: flag = hmfl_i ^ flag_inv_i;
+      brick_regs_pkg::FlagSelectPlim: flag = plim_i ^ flag_inv_i;
+      brick_regs_pkg::FlagSelectMlim: flag = mlim_i ^ flag_inv_i;
+      brick_regs_pkg::FlagSelectUser: flag = user_i ^ flag_inv_i;
+    endcase
     uses_index = 1'b0;
-    hall_mode  = 1'b0;
-    term       = 1'b0;
-    trigger    = 1'b0;
+    case (source_i)
+      brick_regs_pkg::CaptureSourceSoftware: term = index_inv_i;
+      brick_regs_pkg::CaptureSourceFlag:     term = flag;
+      brick_regs_pkg::CaptureSourceIndex: begin
+        term       = index;
+        uses_index = 1'b1;
+      end
+      brick_regs_pkg::CaptureSourceIndexAndFlag: begin
+        term       = index & flag;
+        uses_index = 1'b1;
+      end
+    endcase
+  end
+  assign hall_mode = gated_i & ~uses_index;
+  assign trigger   = ce_i & ready_i & ~captured_q & (hall_mode ? hall_i != hall_last_q : term & ~term_q);
+
+  // No reset: nothing triggers before ready_i, and that comes when all levels of one SCLK ago have come from pins.
+  always_ff @(posedge clk_ref_i) begin
     if (ce_i) begin
-      index = index_i ^ index_inv_i;
-      case (flag_select_i)
-        brick_regs_pkg::FlagSelectHmfl: flag = hmfl_i ^ flag_inv_i;
-        brick_regs_pkg::FlagSelectPlim: flag = plim_i ^ flag_inv_i;
-        brick_regs_pkg::FlagSelectMlim: flag = mlim_i ^ flag_inv_i;
-        brick_regs_pkg::FlagSelectUser: flag = user_i ^ flag_inv_i;
-      endcase
-      case (source_i)
-        brick_regs_pkg::CaptureSourceSoftware: term = index_inv_i;
-        brick_regs_pkg::CaptureSourceFlag:     term = flag;
-        brick_regs_pkg::CaptureSourceIndex: begin
-          term       = index;
-          uses_index = 1'b1;
-        end
-        brick_regs_pkg::CaptureSourceIndexAndFlag: begin
-          term       = index & flag;
-          uses_index = 1'b1;
-        end
-      endcase
-      hall_mode = gated_i & ~uses_index;
-      trigger   = ready_i & armed_q & (hall_mode ? hall_i != hall_last_q : term & ~term_q);
+      term_q      <= term;
+      hall_last_q <= hall_i;
     end
   end
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      term_q        <= 1'b0;
-      hall_last_q   <= 3'd0;
-      armed_q       <= 1'b1;
       captured_q    <= 1'b0;
       captured_gi_q <= 1'b0;
       position_q    <= 24'd0;
       fraction_q    <= 12'd0;
       hall_q        <= 3'd0;
     end else begin
-      if (ce_i) begin
-        term_q      <= term;
-        hall_last_q <= hall_i;
-      end
       if (trigger) begin
-        armed_q       <= 1'b0;
         captured_q    <= 1'b1;
         captured_gi_q <= gated_i & uses_index;
         position_q    <= counter_d_i;
         fraction_q    <= fraction_d_i;
         if (hall_mode) hall_q <= hall_i;
       end else if (read_i) begin
-        armed_q       <= 1'b1;
         captured_q    <= 1'b0;
         captured_gi_q <= 1'b0;
       end

@@ -2,6 +2,7 @@
 // sees them, and the strobe words with their serial clocks. A trip of the watchdog starts a DAC stream of its own, of
 // zeros, when the one under way has ended: PHASE may have stopped. From then on PHASE cuts no word: it may have become
 // too fast. Clock clk_ref_i; on clk_pwm_i run the edges' way to clk_ref_i and the pads of the serial clocks.
+// Asynchronous reset, but of what names the edges in a period of clk_ref_i: no stream runs before it is known.
 `default_nettype none
 
 module channel_clocks (
@@ -49,17 +50,14 @@ module channel_clocks (
   end
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      edge_pwm_q   <= 3'd0;
-      toggle_pwm_q <= 1'b0;
-      ref_last_q   <= 1'b0;
-      ref_next_q   <= 1'b0;
-    end else begin
-      edge_pwm_q   <= edge_pwm_q ^ {servo_fall_i, phase_fall_i, phase_rise_i};
-      toggle_pwm_q <= toggle_q;
-      ref_last_q   <= ref_last;
-      ref_next_q   <= ref_last_q;
-    end
+    if (!rst_ni) edge_pwm_q <= 3'd0;
+    else         edge_pwm_q <= edge_pwm_q ^ {servo_fall_i, phase_fall_i, phase_rise_i};
+  end
+
+  always_ff @(posedge clk_pwm_i) begin
+    toggle_pwm_q <= toggle_q;
+    ref_last_q   <= ref_last;
+    ref_next_q   <= ref_last_q;
   end
 
   logic sclk_mid, sclk_fast, pfm_mid, pfm_fast, unused;

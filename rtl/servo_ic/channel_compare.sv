@@ -35,51 +35,32 @@ module channel_compare #(
   // Passing, with fractions: from `last` to `pos` the position crossed a compare if it was not beyond it before and is
   // now. Arriving: if it was before it and is not now, the same one unit later.
   localparam logic [35:0] ArrivesLater = EquOnLeave ? 36'd0 : 36'd1;
-  logic [35:0] last_q, pos, way, a_ahead, b_ahead;
+  logic [35:0] last_q, pos, moved, way, a_ahead, b_ahead;
   logic [23:0] at;  // where a count has to find a compare
   logic [1:0]  source_q;
-  logic        known_q, jump, hit_a, hit_b, down;
+  logic        known_q, jump, looks, back, hit_a, hit_b, down;
   // No motion: a source that is held, and a position that is elsewhere as it is another's or turns to or from 1/T.
   assign jump = still_i || {other_i, source_fine_i} != source_q;
-  always_comb begin
-    pos     = 36'd0;
-    way     = 36'd0;
-    a_ahead = 36'd0;
-    b_ahead = 36'd0;
-    at      = 24'd0;
-    hit_a   = 1'b0;
-    hit_b   = 1'b0;
-    down    = 1'b0;
-    if (fine_i) begin
-      pos = {counter_i, fraction_i};
-      if (ce_i && known_q && !jump) begin
-        way     = pos - last_q;
-        down    = way[35];
-        way     = down ? last_q - pos : way;
-        a_ahead = down ? last_q - {a_q, af_q} : {a_q, af_q} - last_q;
-        b_ahead = down ? last_q - {b_q, bf_q} : {b_q, bf_q} - last_q;
-        hit_a   = a_ahead - ArrivesLater < way;
-        hit_b   = b_ahead - ArrivesLater < way;
-      end
-    end else if (count_i) begin
-      at    = EquOnLeave ? counter_i : (down_i ? counter_i - 24'd1 : counter_i + 24'd1);
-      hit_a = at == a_q;
-      hit_b = at == b_q;
-      down  = down_i;
-    end
-  end
+  assign pos     = {counter_i, fraction_i};
+  assign moved   = pos - last_q;
+  assign back    = moved[35];
+  assign way     = back ? last_q - pos : moved;
+  assign a_ahead = back ? last_q - {a_q, af_q} : {a_q, af_q} - last_q;
+  assign b_ahead = back ? last_q - {b_q, bf_q} : {b_q, bf_q} - last_q;
+  assign at      = EquOnLeave ? counter_i : (down_i ? counter_i - 24'd1 : counter_i + 24'd1);
+  assign looks   = ce_i & known_q & ~jump;
+  assign hit_a   = fine_i ? looks & (a_ahead - ArrivesLater < way) : count_i & (at == a_q);
+  assign hit_b   = fine_i ? looks & (b_ahead - ArrivesLater < way) : count_i & (at == b_q);
+  assign down    = fine_i ? back : down_i;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      a_q      <= 24'd0;
-      b_q      <= 24'd0;
-      inc_q    <= 24'd0;
-      af_q     <= 12'd0;
-      bf_q     <= 12'd0;
-      equ_q    <= 1'b0;
-      last_q   <= 36'd0;
-      known_q  <= 1'b0;
-      source_q <= 2'd0;
+      a_q   <= 24'd0;
+      b_q   <= 24'd0;
+      inc_q <= 24'd0;
+      af_q  <= 12'd0;
+      bf_q  <= 12'd0;
+      equ_q <= 1'b0;
     end else begin
       if (hit_b) a_q <= down ? a_q - inc_q : a_q + inc_q;
       if (hit_a) b_q <= down ? b_q - inc_q : b_q + inc_q;
@@ -90,11 +71,15 @@ module channel_compare #(
       if (we_i[3]) af_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer2CompareALsb +: 12];
       if (we_i[4]) bf_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer1CompareBLsb +: 12];
       if (we_i[5]) equ_q <= wdata_i[brick_regs_pkg::ServoChannelControlEquStateLsb];
-      if (ce_i && fine_i) last_q <= pos;
-      if (ce_i)                 known_q <= fine_i & ~still_i;
-      else if (jump || !fine_i) known_q <= 1'b0;
-      source_q <= {other_i, source_fine_i};
     end
+  end
+
+  // No reset: without fine_i the next edge forgets the position.
+  always_ff @(posedge clk_ref_i) begin
+    if (ce_i) last_q <= pos;
+    if (ce_i)                 known_q <= fine_i & ~still_i;
+    else if (jump || !fine_i) known_q <= 1'b0;
+    source_q <= {other_i, source_fine_i};
   end
 
   assign a_o          = a_q;

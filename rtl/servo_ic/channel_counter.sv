@@ -8,14 +8,14 @@ module channel_counter (
   input  wire logic        rst_ni,
   input  wire logic        ce_i,          // SCLK
   input  wire logic        hold_i,        // counter reset
-  input  wire logic        count_i,       // at SCLK only
+  input  wire logic        count_i,       // this and the next three at SCLK only
   input  wire logic        down_i,
   input  wire logic        mark_i,        // MLDT: clears T2; copies T2 to T1
   input  wire logic        echo_i,
   input  wire logic        phase_fall_i,
   input  wire logic        servo_fall_i,
   output logic [23:0]      counter_o,
-  output logic [23:0]      counter_d_o,   // after this edge, at SCLK only
+  output logic [23:0]      counter_d_o,   // after this edge
   output logic             down_o,        // direction of the last count
   output logic [22:0]      t1_o,
   output logic [23:0]      phase_pos_o,   // X:+1
@@ -30,14 +30,8 @@ module channel_counter (
   logic [22:0] t2_next, t2_q, servo_t2_q;
   logic        down_q;
 
-  always_comb begin
-    counter_d = 24'd0;
-    t2_next   = 23'd0;
-    if (ce_i) begin
-      counter_d = hold_i ? 24'd0 : (!count_i ? counter_q : (down_i ? counter_q - 24'd1 : counter_q + 24'd1));
-      t2_next   = t2_q == TimerMax ? TimerMax : t2_q + 23'd1;
-    end
-  end
+  assign counter_d = hold_i ? 24'd0 : (!count_i ? counter_q : (down_i ? counter_q - 24'd1 : counter_q + 24'd1));
+  assign t2_next   = t2_q == TimerMax ? TimerMax : t2_q + 23'd1;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -45,16 +39,14 @@ module channel_counter (
       t1_q      <= 24'd0;
       t2_q      <= 23'd0;
       down_q    <= 1'b0;
-    end else if (ce_i) begin
+    end else begin
       counter_q <= counter_d;
-      t2_q      <= mark_i || count_i ? 23'd0 : t2_next;
+      if (ce_i) t2_q <= mark_i || count_i ? 23'd0 : t2_next;
       if (echo_i || count_i) begin
         t1_q[brick_regs_pkg::ServoChannelTimer1T1Lsb +: 23]   <= echo_i ? t2_q : t2_next;
         t1_q[brick_regs_pkg::ServoChannelTimer1ReversedLsb]   <= ~echo_i & (down_i ^ down_q);
       end
       if (count_i) down_q <= down_i;
-    end else if (hold_i) begin
-      counter_q <= 24'd0;
     end
   end
 

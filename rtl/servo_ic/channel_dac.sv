@@ -11,13 +11,19 @@ module channel_dac (
   output logic             data_o
 );
 
-  logic [17:0] word_q;
+  logic        data_q;
+  logic [16:0] word_q;  // the bits behind it: none comes out before a word is loaded
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni)      word_q <= 18'd0;
-    else if (load_i)  word_q <= command_i;
-    else if (shift_i) word_q <= {word_q[16:0], 1'b0};
+    if (!rst_ni)      data_q <= 1'b0;
+    else if (load_i)  data_q <= command_i[17];
+    else if (shift_i) data_q <= word_q[16];
   end
-  assign data_o = word_q[17];
+
+  always_ff @(posedge clk_ref_i) begin
+    if (load_i)       word_q <= command_i[16:0];
+    else if (shift_i) word_q <= {word_q[15:0], 1'b0};
+  end
+  assign data_o = data_q;
 
 endmodule : channel_dac
 

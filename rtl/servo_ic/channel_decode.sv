@@ -1,12 +1,11 @@
 // Encoder decoder: compares A, B, C with their levels one SCLK before and says whether the counter moves. All modes of
-// I7mn0. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Decode.
+// I7mn0. Clock clk_ref_i; no reset: before ready_i nothing is decoded. docs/servo_channel.md, Decode.
 `default_nettype none
 
 module channel_decode #(
   parameter bit ALeadsUp = 1'b1  // A before B counts up in the clockwise modes
 ) (
   input  wire logic       clk_ref_i,
-  input  wire logic       rst_ni,
   input  wire logic       ce_i,          // SCLK
   input  wire logic       ready_i,
   input  wire logic [3:0] mode_i,        // I7mn0
@@ -22,9 +21,8 @@ module channel_decode #(
 );
 
   logic [2:0] last_q;
-  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni)   last_q <= 3'd0;
-    else if (ce_i) last_q <= abc_i;
+  always_ff @(posedge clk_ref_i) begin
+    if (ce_i) last_q <= abc_i;
   end
 
   logic look;
@@ -38,26 +36,25 @@ module channel_decode #(
   assign ccw = |(mode_i & (brick_regs_pkg::DecodeX4Cw ^ brick_regs_pkg::DecodeX4Ccw));
 
   logic [1:0] step;  // along the quadrature cycle 00, 10, 11, 01 of {A, B}
+  logic       moved, a_rises;  // by one step; A
+  assign step    = {abc_i[1], abc_i[0] ^ abc_i[1]} - {last_q[1], last_q[0] ^ last_q[1]};
+  assign moved   = (step == 2'd1) | (step == 2'd3);
+  assign a_rises = abc_i[0] & ~last_q[0];
+
   logic [2:0] hall, last_hall;
-  logic       moved;  // by one: as a variable of its own, because Icarus 11 never settles on a bit of `step` read here
-  logic       a_rises, hall_up, hall_down, hall_jump, count, down;
+  logic       hall_up, hall_down, hall_jump;
+  assign hall      = HallPlace[5'd3 * {2'b00, abc_i} +: 3];
+  assign last_hall = HallPlace[5'd3 * {2'b00, last_q} +: 3];
+  assign hall_up   = last_hall != 3'd7 && hall == (last_hall == 3'd5 ? 3'd0 : last_hall + 3'd1);
+  assign hall_down = hall != 3'd7 && last_hall == (hall == 3'd5 ? 3'd0 : hall + 3'd1);
+  assign hall_jump = last_hall != 3'd7 && hall != last_hall && !hall_up && !hall_down;
+
+  logic count, down;
   always_comb begin
-    step      = 2'd0;
-    moved     = 1'b0;
-    a_rises   = 1'b0;
-    hall      = 3'd7;
-    last_hall = 3'd7;
-    hall_up   = 1'b0;
-    hall_down = 1'b0;
-    hall_jump = 1'b0;
-    count     = 1'b0;
-    down      = 1'b0;
-    error_o   = 1'b0;
+    count   = 1'b0;
+    down    = (step == 2'd3) ^ ccw ^ ~ALeadsUp;
+    error_o = 1'b0;
     if (look) begin
-      step    = {abc_i[1], abc_i[0] ^ abc_i[1]} - {last_q[1], last_q[0] ^ last_q[1]};
-      moved   = (step == 2'd1) | (step == 2'd3);
-      a_rises = abc_i[0] & ~last_q[0];
-      down    = (step == 2'd3) ^ ccw ^ ~ALeadsUp;
       case (mode_i)
         brick_regs_pkg::DecodePulseCw, brick_regs_pkg::DecodePulseCcw: begin
           count = a_rises;
@@ -80,11 +77,6 @@ module channel_decode #(
           down  = pulse_down_i;
         end
         brick_regs_pkg::DecodeHallCw, brick_regs_pkg::DecodeHallCcw: begin
-          hall      = HallPlace[5'd3 * {2'b00, abc_i} +: 3];
-          last_hall = HallPlace[5'd3 * {2'b00, last_q} +: 3];
-          hall_up   = hall != 3'd7 && last_hall != 3'd7 && hall == (last_hall == 3'd5 ? 3'd0 : last_hall + 3'd1);
-          hall_down = hall != 3'd7 && last_hall != 3'd7 && last_hall == (hall == 3'd5 ? 3'd0 : hall + 3'd1);
-          hall_jump = last_hall != 3'd7 && hall != last_hall && !hall_up && !hall_down;
           count     = hall_up | hall_down;
           down      = hall_down ^ ccw;
           error_o   = hall == 3'd7 || hall_jump;
@@ -97,7 +89,7 @@ module channel_decode #(
   assign count_o = count & ~hold_i;
   assign down_o  = down;
   assign mark_o  = look & (mode_i == brick_regs_pkg::DecodeMldt) & pulse_i;
-  assign echo_o  = (mode_i == brick_regs_pkg::DecodeMldt) & a_rises;
+  assign echo_o  = look & (mode_i == brick_regs_pkg::DecodeMldt) & a_rises;
 
 endmodule : channel_decode
 

@@ -1,5 +1,6 @@
 // Hardware clock of a servo IC: clk_ref / 2^n as a one-cycle enable. Free running; a new n is taken at the terminal
-// count, so no period is ever cut. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Clocks.
+// count, so no period is ever cut. Clock clk_ref_i, asynchronous reset: the first edge behind it starts a period.
+// docs/servo_channel.md, Clocks.
 `default_nettype none
 
 module channel_divider (
@@ -18,15 +19,13 @@ module channel_divider (
   assign mid_o  = ~fast_o & (left_q == half_q);
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      left_q <= 7'd0;
-      half_q <= 7'd0;
-    end else if (ce_o) begin
-      left_q <= 7'd127 >> (3'd7 - n_i);
-      half_q <= 7'd64 >> (3'd7 - n_i) & {7{n_i != 3'd0}};
-    end else begin
-      left_q <= left_q - 7'd1;
-    end
+    if (!rst_ni)   left_q <= 7'd0;
+    else if (ce_o) left_q <= 7'd127 >> (3'd7 - n_i);
+    else           left_q <= left_q - 7'd1;
+  end
+
+  always_ff @(posedge clk_ref_i) begin
+    if (ce_o) half_q <= 7'd64 >> (3'd7 - n_i);
   end
 
 endmodule : channel_divider

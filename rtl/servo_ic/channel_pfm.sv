@@ -27,28 +27,28 @@ module channel_pfm (
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      acc_q   <= 24'd0;
-      left_q  <= 8'd0;
+      acc_q  <= 24'd0;
+      down_q <= 1'b0;
+    end else if (run_i && pfm_ce_i) begin
+      acc_q <= sum[23:0];
+      if (sum[24]) down_q <= command_i[23];
+    end
+  end
+
+  // No reset: without run_i the next edge ends a pulse, SCLK forgets that one began.
+  always_ff @(posedge clk_ref_i) begin
+    if (sclk_ce_i) event_q <= 1'b0;
+    if (!run_i) begin
       pulse_q <= 1'b0;
-      down_q  <= 1'b0;
-      event_q <= 1'b0;
-    end else begin
-      if (sclk_ce_i) event_q <= 1'b0;
-      if (!run_i) begin
-        left_q  <= 8'd0;
+    end else if (pfm_ce_i) begin
+      if (sum[24]) begin
+        left_q  <= width_i == 8'd0 ? 8'd0 : width_i - 8'd1;
+        pulse_q <= 1'b1;
+        event_q <= 1'b1;
+      end else if (left_q != 8'd0) begin
+        left_q <= left_q - 8'd1;
+      end else begin
         pulse_q <= 1'b0;
-      end else if (pfm_ce_i) begin
-        acc_q <= sum[23:0];
-        if (sum[24]) begin
-          left_q  <= width_i == 8'd0 ? 8'd0 : width_i - 8'd1;
-          pulse_q <= 1'b1;
-          down_q  <= command_i[23];
-          event_q <= 1'b1;
-        end else if (left_q != 8'd0) begin
-          left_q <= left_q - 8'd1;
-        end else begin
-          pulse_q <= 1'b0;
-        end
       end
     end
   end

@@ -1,6 +1,7 @@
 // What a channel's PWM needs of the IC, a tick later in flip-flops of the channel's own: the four stand apart on a chip
 // and a tick is spent on the way to them. So the PWM is a tick behind the triangle, as the board's nets are. Synthesis
-// keeps each channel's: shared they would stand in the middle again. Clock clk_pwm_i, asynchronous reset. docs/fpga.md.
+// keeps each channel's: shared they would stand in the middle again. Clock clk_pwm_i, asynchronous reset of the counter
+// alone: the first edge behind it takes commands of 0 at most and begins no dead time. docs/fpga.md.
 `default_nettype none
 
 (* keep_hierarchy = "true" *)
@@ -15,22 +16,17 @@ module channel_triangle (
   output logic [7:0]       deadtime_o
 );
 
-  localparam logic [7:0] DeadtimeReset =
-      brick_regs_pkg::ServoIcPwmControlReset[brick_regs_pkg::ServoIcPwmControlDeadtimeLsb +: 8];
-
   logic [16:0] cnt_q;
   logic        turn_q;
   logic [7:0]  deadtime_q;
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      cnt_q      <= 17'd0;
-      turn_q     <= 1'b0;
-      deadtime_q <= DeadtimeReset;
-    end else begin
-      cnt_q      <= cnt_i;
-      turn_q     <= turn_i;
-      deadtime_q <= deadtime_i;
-    end
+    if (!rst_ni) cnt_q <= 17'd0;
+    else         cnt_q <= cnt_i;
+  end
+
+  always_ff @(posedge clk_pwm_i) begin
+    turn_q     <= turn_i;
+    deadtime_q <= deadtime_i;
   end
 
   assign cnt_o      = cnt_q;

@@ -98,7 +98,7 @@ module servo_channel (
   logic [22:0] t1, servo_t2;
   logic [11:0] fraction, fraction_d, servo_fraction_q;
   channel_decode u_decode (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
+    .clk_ref_i, .ce_i(sclk_ce_i),
     .ready_i(ready), .mode_i(mode), .hold_i(hold),
     .abc_i(pin_level[brick_regs_pkg::ServoChannelStatusChaLsb +: 3]),
     .pulse_i(pfm_event), .pulse_down_i(pfm_down),
@@ -112,7 +112,7 @@ module servo_channel (
     .phase_pos_o(phase_pos), .servo_pos_o(servo_pos), .servo_t1_o(servo_t1), .servo_t2_o(servo_t2)
   );
   channel_subcount u_subcount (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
+    .clk_ref_i, .ce_i(sclk_ce_i),
     .enable_i(fine & ~still_o), .count_i(count),
     .reversed_i(down ^ last_down), .down_i(last_down), .down_new_i(down), .t1_i(t1),
     .fraction_o(fraction), .fraction_d_o(fraction_d)

@@ -64,14 +64,14 @@ module servo_ic_rules (
   (* hierconn *) wire logic [23:0] \dut.u_channels.gen_channel[1].u_channel.u_regs.control_q ;
   (* hierconn *) wire logic [23:0] \dut.u_channels.gen_channel[2].u_channel.u_regs.control_q ;
   (* hierconn *) wire logic [23:0] \dut.u_channels.gen_channel[3].u_channel.u_regs.control_q ;
-  (* hierconn *) wire logic [17:0] \dut.u_channels.gen_channel[0].u_channel.u_dac_a.word_q ;
-  (* hierconn *) wire logic [17:0] \dut.u_channels.gen_channel[0].u_channel.u_dac_b.word_q ;
-  (* hierconn *) wire logic [17:0] \dut.u_channels.gen_channel[1].u_channel.u_dac_a.word_q ;
-  (* hierconn *) wire logic [17:0] \dut.u_channels.gen_channel[1].u_channel.u_dac_b.word_q ;
-  (* hierconn *) wire logic [17:0] \dut.u_channels.gen_channel[2].u_channel.u_dac_a.word_q ;
-  (* hierconn *) wire logic [17:0] \dut.u_channels.gen_channel[2].u_channel.u_dac_b.word_q ;
-  (* hierconn *) wire logic [17:0] \dut.u_channels.gen_channel[3].u_channel.u_dac_a.word_q ;
-  (* hierconn *) wire logic [17:0] \dut.u_channels.gen_channel[3].u_channel.u_dac_b.word_q ;
+  (* hierconn *) wire logic [16:0] \dut.u_channels.gen_channel[0].u_channel.u_dac_a.word_q ;
+  (* hierconn *) wire logic [16:0] \dut.u_channels.gen_channel[0].u_channel.u_dac_b.word_q ;
+  (* hierconn *) wire logic [16:0] \dut.u_channels.gen_channel[1].u_channel.u_dac_a.word_q ;
+  (* hierconn *) wire logic [16:0] \dut.u_channels.gen_channel[1].u_channel.u_dac_b.word_q ;
+  (* hierconn *) wire logic [16:0] \dut.u_channels.gen_channel[2].u_channel.u_dac_a.word_q ;
+  (* hierconn *) wire logic [16:0] \dut.u_channels.gen_channel[2].u_channel.u_dac_b.word_q ;
+  (* hierconn *) wire logic [16:0] \dut.u_channels.gen_channel[3].u_channel.u_dac_a.word_q ;
+  (* hierconn *) wire logic [16:0] \dut.u_channels.gen_channel[3].u_channel.u_dac_b.word_q ;
   (* hierconn *) wire logic [23:0] \dut.u_regs.dac_strobe_q ;
   (* hierconn *) wire logic [23:0] \dut.u_regs.adc_strobe_q ;
   (* hierconn *) wire logic        \dut.u_channels.dac_load ;
@@ -79,7 +79,7 @@ module servo_ic_rules (
   (* hierconn *) wire logic [6:0]  \dut.u_channels.u_clocks.u_dac.left_q ;
   logic [95:0] controls;
   logic [23:0] control;
-  logic [35:0] words;  // what the DACs of the channel have still to send, of B and A
+  logic [33:0] words;  // what the DACs of the channel have still to send behind the bits at their pins, of B and A
   logic [11:0] to_go;  // bits of the DACs' word, edges of clk_ref to the next of them
   assign controls = {\dut.u_channels.gen_channel[3].u_channel.u_regs.control_q ,
                      \dut.u_channels.gen_channel[2].u_channel.u_regs.control_q ,
@@ -160,7 +160,7 @@ module servo_ic_rules (
 
     // R6: The data lines of the DACs carry zeros from the first word on that begins after the trip, and no level moves.
     if (bits_q != 5'd0) begin
-      R6: assert (dac_a == (kept[22] & kept[20]) && dac_b == (kept[22] & kept[20]) && words == 36'h0);
+      R6: assert (dac_a == (kept[22] & kept[20]) && dac_b == (kept[22] & kept[20]) && words == 34'h0);
       C6: cover (dac_a && bits_q == 5'd3);
     end
 

@@ -206,6 +206,7 @@ int counts_of_a_cycle(unsigned mode) {
   BasicChannelDecode<ALeadsUp> model;
   int counts = 0;
   rtl.in.mode = mode;
+  rtl.edge();  // of the levels one SCLK ago, which ready_i promises
   for (unsigned abc : kALeads) {
     rtl.in.abc = abc;
     rtl.edge();
@@ -231,6 +232,7 @@ TEST(DecodeSense, PulseAndDirectionAndHallDoNotDependOnIt) {
     std::mt19937 random(random_seed(mode));
     int counted = 0;
     rtl.in.mode = mode;
+    rtl.edge();
     for (int i = 0; i < 2000; ++i) {
       rtl.in.abc = random() % 8;
       rtl.in.pulse = random() % 3 == 0;

@@ -50,7 +50,7 @@ module choices_bench (
       .equ_o(equ_o[i])
     );
     channel_decode #(.ALeadsUp(i == 1)) u_decode (
-      .clk_ref_i, .rst_ni, .ce_i, .ready_i, .mode_i, .hold_i,
+      .clk_ref_i, .ce_i, .ready_i, .mode_i, .hold_i,
       .abc_i, .pulse_i, .pulse_down_i,
       .count_o(count_o[i]), .down_o(down_o[i]), .error_o(error_o[i]),
       .mark_o(mark), .echo_o(echo)

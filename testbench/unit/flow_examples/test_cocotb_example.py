@@ -46,7 +46,7 @@ class Cocotb(Installed):
         self.assertRegex(f"{first['name']}: {first['detail']}", r"position .*: -?\d+, expected -?\d+")
 
     def test_a_capture_that_does_not_wait_for_its_read_fails(self):
-        self.plant("rtl/servo_ic/channel_capture.sv", "armed_q       <= 1'b0;", "armed_q       <= 1'b1;")
+        self.plant("rtl/servo_ic/channel_capture.sv", "ready_i & ~captured_q & (", "ready_i & (")
         self.assertEqual(self.failed(), {"index_captures_its_position_once", RANDOM})
 
 
