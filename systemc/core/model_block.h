@@ -34,8 +34,8 @@ class ModelBlock {
   virtual void advance(Tick t) = 0;
 
   // Asynchronous reset: all registers at their reset values, all edges up to and including t spent in reset. Called
-  // again with later t for as long as rst_n is low; the first edge executed normally is t + 1. Memory keeps its
-  // content.
+  // before anything else, and again with later t for as long as rst_n is low; the first edge executed normally is
+  // t + 1. Memory keeps its content.
   virtual void reset(Tick t) = 0;
 };
 

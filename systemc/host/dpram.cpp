@@ -30,15 +30,10 @@ Tick Dpram::next_event() const {
 }
 
 void Dpram::advance(Tick t) {
-  if (others() && host_settled()) {
-    let_others_pass(t - now_);
-    now_ = t;
-    return;
-  }
   while (now_ < t) {
-    const bool settled = cpu_settled();
-    if (settled && host_settled()) break;
-    const Tick edge = settled ? next_ref_edge(now_) : now_ + 1;
+    const Tick edge = next_event(), before = std::min(edge - 1, t);
+    if (others()) let_others_pass(before - now_);
+    now_ = before;
     if (edge > t) break;
     now_ = edge;
     // Both decisions come from the state before the edge. They never let both sides at one word of which one writes.
@@ -47,7 +42,6 @@ void Dpram::advance(Tick t) {
     cpu_edge(block_cpu);
     cpu_pins();
   }
-  now_ = t;
 }
 
 // Nothing of them but their way through the stages, which is five edges long: not selected, a strobe is done when the
@@ -56,16 +50,14 @@ void Dpram::let_others_pass(Tick count) {
   constexpr Tick kEdges = 5;
   if (count >= kEdges) {
     const auto arrive = [](Strobe& s, std::uint8_t falls, bool strobe_n) {
-      s.falls1 = s.falls2 = s.falls3 = s.done = falls;
+      s.falls1 = s.falls2 = s.falls3 = s.done = s.acknowledged = falls;
       s.low1 = s.low2 = !strobe_n;
     };
     arrive(rd_, in.rd_falls, in.cpu_rd_n);
     arrive(wr_, in.wr_falls, in.cpu_wr_n);
-    rd_.acknowledged = rd_.done;
-    pins_ = pin_cell();
     return;
   }
-  for (Tick n = count; n > 0; --n) {
+  for (; count > 0; --count) {
     cpu_edge(false);
     cpu_pins();
   }
@@ -124,9 +116,8 @@ void Dpram::host_edge(bool blocked) {
 // A write that was granted but not made yet is lost; the memory keeps its content.
 void Dpram::reset(Tick t) {
   rd_ = wr_ = Strobe{};
-  drive_rd_ = 0;
-  drive_ = sel_ = cpu_busy_ = own_ = own_wr_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
-  pins_ = cell_ = wdata_ = cpu_rdata_ = mem_rdata_ = 0;
+  drive_ = sel_ = cpu_busy_ = own_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
+  cpu_rdata_ = mem_rdata_ = 0;
   now_ = t;
 }
 

@@ -15,7 +15,7 @@ namespace brick {
 
 class Dpram final : public sc_core::sc_module, public ModelBlock {
  public:
-  explicit Dpram(const sc_core::sc_module_name& name) : sc_module(name) { reset(0); }
+  explicit Dpram(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   static constexpr unsigned kWords = DpramMemory::kWords;
 
@@ -47,8 +47,8 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
  private:
   static constexpr unsigned kSmallWords = 8192;
   struct Strobe {
-    std::uint8_t falls1 = 0, falls2 = 0, falls3 = 0, done = 0, acknowledged = 0;
-    bool low1 = false, low2 = false;
+    std::uint8_t falls1, falls2, falls3, done, acknowledged;
+    bool low1, low2;
     bool pending() const { return falls2 != done; }
     bool low() const { return pending() && low2; }
     // A tick after its fall, since level and select may come so late: nothing for this RAM.
@@ -80,17 +80,17 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
 
   DpramMemory memory_;
   // CPU side: pins as sampled, then the access under way
-  Strobe rd_, wr_;
-  bool sel_;
-  std::uint16_t pins_;
-  bool drive_;             // the word of a read stands
-  std::uint8_t drive_rd_;  // which one it was
-  bool cpu_busy_, own_, own_wr_, sampled_, proven_;
-  std::uint16_t cell_, wdata_, cpu_rdata_;
+  Strobe rd_{}, wr_{};
+  bool sel_{};
+  std::uint16_t pins_{};
+  bool drive_{};             // the word of a read stands
+  std::uint8_t drive_rd_{};  // which one it was
+  bool cpu_busy_{}, own_{}, own_wr_{}, sampled_{}, proven_{};
+  std::uint16_t cell_{}, wdata_{}, cpu_rdata_{};
   // host side
-  bool host_own_, mem_busy_;
-  std::uint16_t mem_rdata_;
-  Tick now_;
+  bool host_own_{}, mem_busy_{};
+  std::uint16_t mem_rdata_{};
+  Tick now_{};
 };
 
 }  // namespace brick

@@ -11,7 +11,7 @@ namespace brick {
 
 class HostInterrupt final : public sc_core::sc_module, public RefClockedBlock {
  public:
-  explicit HostInterrupt(const sc_core::sc_module_name& name) : sc_module(name) { reset_registers(); }
+  explicit HostInterrupt(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   static constexpr unsigned kIrqLowClocks = 4;
 
@@ -36,8 +36,8 @@ class HostInterrupt final : public sc_core::sc_module, public RefClockedBlock {
     low_ = 0;
   }
 
-  bool irq_;
-  unsigned low_;  // edges at which it has still to stay low
+  bool irq_{};
+  unsigned low_{};  // edges at which it has still to stay low
 };
 
 }  // namespace brick

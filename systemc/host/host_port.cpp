@@ -27,8 +27,6 @@ void set_byte(std::uint32_t& word, unsigned lsb, std::uint8_t value) {
 
 }  // namespace
 
-HostPort::HostPort(const sc_core::sc_module_name& name) : sc_module(name) { reset_registers(); }
-
 bool HostPort::hreq() const { return (icr::kRreq.is_set(icr_) && rxdf_) || (icr::kTreq.is_set(icr_) && txde_); }
 
 bool HostPort::irq() const {

@@ -14,7 +14,7 @@ namespace brick {
 
 class HostPort final : public sc_core::sc_module, public RefClockedBlock {
  public:
-  explicit HostPort(const sc_core::sc_module_name& name);
+  explicit HostPort(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   using Inputs = HostPortInputs;
   Inputs in;
@@ -42,11 +42,11 @@ class HostPort final : public sc_core::sc_module, public RefClockedBlock {
   bool tx_move() const { return !txde_ && !hrdf_; }
   bool rx_move() const { return !htde_ && !rxdf_; }
 
-  std::uint8_t icr_, cvr_, ivr_, hcr_, hbar_;
-  std::uint16_t hpcr_;
-  std::uint32_t tx_, horx_, hotx_, rx_;
-  bool txde_, hrdf_, htde_, rxdf_;
-  bool saw_;  // the host's read under way found a word in RX
+  std::uint8_t icr_{}, cvr_{}, ivr_{}, hcr_{}, hbar_{};
+  std::uint16_t hpcr_{};
+  std::uint32_t tx_{}, horx_{}, hotx_{}, rx_{};
+  bool txde_{}, hrdf_{}, htde_{}, rxdf_{};
+  bool saw_{};  // the host's read under way found a word in RX
 };
 
 }  // namespace brick

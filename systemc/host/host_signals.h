@@ -14,7 +14,7 @@ namespace brick {
 
 class HostSignals final : public sc_core::sc_module, public RefClockedBlock {
  public:
-  explicit HostSignals(const sc_core::sc_module_name& name) : sc_module(name) { reset_registers(); }
+  explicit HostSignals(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   using Inputs = HostSignalsInputs;
   Inputs in;
@@ -43,7 +43,7 @@ class HostSignals final : public sc_core::sc_module, public RefClockedBlock {
   }
   void reset_registers() override { latch_ = ctrl_ = 0; }
 
-  std::uint8_t latch_, ctrl_;
+  std::uint8_t latch_{}, ctrl_{};
 };
 
 }  // namespace brick

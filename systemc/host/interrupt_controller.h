@@ -14,7 +14,7 @@ namespace brick {
 
 class InterruptController final : public sc_core::sc_module, public RefClockedBlock {
  public:
-  explicit InterruptController(const sc_core::sc_module_name& name) : sc_module(name) { reset_registers(); }
+  explicit InterruptController(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   using Inputs = InterruptControllerInputs;
   Inputs in;
@@ -49,8 +49,8 @@ class InterruptController final : public sc_core::sc_module, public RefClockedBl
   void step() override;
   void reset_registers() override;
 
-  std::uint8_t line1_, line2_, line3_;  // line3_ is line2_ one edge ago
-  std::uint8_t latch_, msk_, elr_;
+  std::uint8_t line1_{}, line2_{}, line3_{};  // line3_ is line2_ one edge ago
+  std::uint8_t latch_{}, msk_{}, elr_{};
 };
 
 }  // namespace brick

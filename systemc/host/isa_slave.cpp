@@ -14,9 +14,8 @@ Tick IsaSlave::next_event() const {
   const std::uint8_t la = la_pins();
   const Tick next = la != la1_ || la != la2_ || la_hit(la) == isa_memcs16_n() ? next_memcs16() : kNever;
   const Tick edge = next_ref_edge(now_);
-  const bool settings = straps_ != in || resetdrv_ != (in.isa_resetdrv ? 3 : 0);
   const unsigned at_edge = command_in(edge - 1 - now_);
-  if (settings || ref_shows(at_edge)) return std::min(next, edge);
+  if (!settings_still() || ref_shows(at_edge)) return std::min(next, edge);
   // At the edge after it the commands are what the pins are.
   const bool shows = ref_acts(at_edge) ? commands != 0 : ref_shows(commands);
   return shows ? std::min(next, edge + kTicksPerRef) : next;
@@ -32,18 +31,20 @@ Tick IsaSlave::next_memcs16() const {
 
 void IsaSlave::advance(Tick t) {
   if (t <= now_) return;  // no edge, so the enable as it is now has not been seen yet
-  const bool still = stages_still();
+  bool still = stages_still();
   for (Tick edge = next_ref_edge(now_); !(still && commands_settled()); edge += kTicksPerRef) {
     if (edge > t) {
       pwm_edges(t - now_, still);
       break;
     }
     pwm_edges(edge - 1 - now_, still);
-    if (ref_acts(cmd2_) || cycle_ == Cycle::kShow) cycle_edge();
+    cycle_edge();
     pwm_edges(1, still);
-    if (!still) sample();
     now_ = edge;
-    if (!still && commands_settled() && stages_still()) break;
+    if (!still) {
+      sample();
+      still = stages_still();
+    }
   }
   now_ = t;
   oe_shown_ = isa_sd_oe();
@@ -59,8 +60,8 @@ bool IsaSlave::commands_settled() const {
 bool IsaSlave::stages_still() const {
   const std::uint8_t la = la_pins();
   const bool data = in.isa_sd == sd1_ && sd1_ == sd2_ && (!writes(command_pins() | cmd1_ | cmd2_) || sd_low_ == sd2_);
-  return data && la == la1_ && la == la2_ && la_hits_ == (la_hit(la) ? kAllHits : 0) && (in.isa_sa & kSa) == sa_ &&
-         in.isa_aen == aen_ && in.isa_sbhe_n == sbhe_n_ && resetdrv_ == (in.isa_resetdrv ? 3 : 0) && !(straps_ != in);
+  return data && la == la1_ && la == la2_ && la_hits_ == with_hit(la_hits_, la) && (in.isa_sa & kSa) == sa_ &&
+         in.isa_aen == aen_ && in.isa_sbhe_n == sbhe_n_ && settings_still();
 }
 
 // The cycle moves on at a clk_ref edge that sees these commands.
@@ -81,33 +82,20 @@ bool IsaSlave::ref_shows(unsigned command) const {
 
 // --------------------------------------------------------------------------------------------------------------- edges
 
-// `count` edges of clk_pwm, two at most. LA is compared behind the two stages.
+// `count` edges of clk_pwm. LA is compared behind the two stages.
 void IsaSlave::pwm_edges(Tick count, bool still) {
-  if (count <= 0) return;
-  const std::uint8_t commands = command_pins();
-  if (still) {
-    cmd2_ = count == 1 ? cmd1_ : commands;
-    cmd1_ = commands;
-    return;
-  }
-  const std::uint8_t la = la_pins();
-  unsigned hits = la_hits_ * 2u + (la_hit(la2_) ? 1 : 0);
-  if (writes(cmd2_)) sd_low_ = sd2_;
-  if (count == 1) {
+  for (; count > 0; --count) {
+    if (!still) {
+      if (writes(cmd2_)) sd_low_ = sd2_;
+      sd2_ = sd1_;
+      sd1_ = in.isa_sd;
+      la_hits_ = with_hit(la_hits_, la2_);
+      la2_ = la1_;
+      la1_ = la_pins();
+    }
     cmd2_ = cmd1_;
-    sd2_ = sd1_;
-    la2_ = la1_;
-  } else {
-    hits = hits * 2 + (la_hit(la1_) ? 1 : 0);
-    if (writes(cmd1_)) sd_low_ = sd1_;
-    cmd2_ = commands;
-    sd2_ = in.isa_sd;
-    la2_ = la;
+    cmd1_ = command_pins();
   }
-  cmd1_ = commands;
-  sd1_ = in.isa_sd;
-  la1_ = la;
-  la_hits_ = static_cast<std::uint8_t>(hits & kAllHits);
 }
 
 // What moves with every edge of clk_ref.
@@ -157,9 +145,9 @@ void IsaSlave::begin() {
   target_ = decode();
   kind_ = cmd2_;
   byte8_ = sbhe_n_ && (sa_ & 1);  // an 8-bit host's odd byte is on the low lane
-  const auto lanes = static_cast<std::uint8_t>((sbhe_n_ ? 0 : 2) | ((sa_ & 1) ? 0 : 1));
+  const std::uint8_t lanes = sbhe_n_ ? 1 : (sa_ & 1) ? 2 : 3;
   be_ = byte8_ ? 2 : lanes;
-  lanes_ = (target_ & kMemory) && !byte8_ ? lanes : 1;
+  lanes_ = (target_ & kMemory) ? lanes : 1;
   mem_addr_ = static_cast<std::uint16_t>((sa_ >> 1 & 0x1FFF) | (straps_.window_flat ? sa_ >> 14 & 3 : page_) << 13);
   io_addr_ = sa_ & 0xF;
 }
@@ -185,22 +173,20 @@ std::uint8_t IsaSlave::io_read() const {
   return addresses_page() ? static_cast<std::uint8_t>(0xFC | page_) : 0xFF;
 }
 
+// What takes its pin at the first edge, long before a command is answered, stays: samples of the address, and the data
+// that were seen with a write command low, as which all commands count.
 void IsaSlave::reset(Tick t) {
   now_ = t;
   cmd1_ = cmd2_ = kAll;
   la1_ = la2_ = la_hits_ = 0;
-  sd1_ = sd2_ = sd_low_ = wdata_ = 0;
-  sa_ = 0;
-  aen_ = false;
-  sbhe_n_ = true;
+  sd1_ = sd2_ = wdata_ = 0;
   resetdrv_ = 0;
   straps_ = IsaStraps::none();
   cycle_ = Cycle::kHold;
   byte8_ = false;
-  kind_ = target_ = lanes_ = be_ = page_ = io_addr_ = 0;
+  kind_ = target_ = be_ = page_ = io_addr_ = 0;
   mem_addr_ = 0;
   sd_ = 0xFFFF;
-  oe_shown_ = 0;
 }
 
 }  // namespace brick

@@ -15,7 +15,7 @@ namespace brick {
 
 class IsaSlave final : public sc_core::sc_module, public ModelBlock {
  public:
-  explicit IsaSlave(const sc_core::sc_module_name& name) : sc_module(name) { reset(0); }
+  explicit IsaSlave(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   using Inputs = IsaSlaveInputs;
   Inputs in;
@@ -92,7 +92,11 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   std::uint8_t la_pins() const {
     return static_cast<std::uint8_t>(straps_.slot8 ? in.isa_sa >> 17 & 7 : in.isa_la & 0x7Fu);
   }
+  bool settings_still() const { return !(straps_ != in) && resetdrv_ == (in.isa_resetdrv ? 3 : 0); }
   bool la_hit(unsigned la) const { return ((la << 3 ^ straps_.window) & (straps_.slot8 ? 0x38u : 0x3F8u)) == 0; }
+  std::uint8_t with_hit(std::uint8_t hits, unsigned la) const {
+    return static_cast<std::uint8_t>((hits << 1 | (la_hit(la) ? 1 : 0)) & kAllHits);
+  }
   bool read_low() const {
     return (((kind_ & kIor) && !in.isa_ior_n) || ((kind_ & kMemr) && !in.isa_memr_n)) && in.isa_iow_n && in.isa_memw_n;
   }
@@ -114,22 +118,22 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   Cycle next_cycle(bool io_load, bool mem_load) const;
   void begin();
 
-  Tick now_;
+  Tick now_{};
   // clk_pwm
-  std::uint8_t cmd1_, cmd2_, la1_, la2_, la_hits_;
-  std::uint16_t sd1_, sd2_, sd_low_;  // sd_low_: the last with a write command low
-  std::uint16_t wdata_;               // the same for who works on clk_ref
+  std::uint8_t cmd1_{}, cmd2_{}, la1_{}, la2_{}, la_hits_{};
+  std::uint16_t sd1_{}, sd2_{}, sd_low_{};  // sd_low_: the last with a write command low
+  std::uint16_t wdata_{};                   // the same for who works on clk_ref
   // clk_ref: samples
-  std::uint32_t sa_;
-  bool aen_, sbhe_n_;
-  std::uint8_t resetdrv_;
+  std::uint32_t sa_{};
+  bool aen_{}, sbhe_n_{};
+  std::uint8_t resetdrv_{};
   IsaStraps straps_;
   // the cycle
-  Cycle cycle_;
-  bool byte8_;
-  std::uint8_t kind_, target_, lanes_, be_, page_, io_addr_;
-  std::uint16_t mem_addr_, sd_;
-  std::uint8_t oe_shown_;  // after the last edge
+  Cycle cycle_{};
+  bool byte8_{};
+  std::uint8_t kind_{}, target_{}, lanes_{}, be_{}, page_{}, io_addr_{};
+  std::uint16_t mem_addr_{}, sd_{};
+  std::uint8_t oe_shown_{};  // after the last edge
   bool every_end_ = true;
 };
 

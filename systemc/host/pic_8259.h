@@ -13,7 +13,7 @@ namespace brick {
 
 class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
  public:
-  explicit Pic8259(const sc_core::sc_module_name& name) : sc_module(name) { reset_registers(); }
+  explicit Pic8259(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   using Inputs = Pic8259Inputs;
   Inputs in;
@@ -70,7 +70,7 @@ class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
   bool reads_poll() const { return in.rd && registers_.poll && in.addr <= kMask; }
   Registers coming() const;  // after the coming edge
 
-  std::uint8_t line1_, line2_;
+  std::uint8_t line1_{}, line2_{};
   Registers registers_;
 };
 

@@ -32,7 +32,7 @@ class RefClockedBlock : public ModelBlock {
   virtual void reset_registers() = 0;
 
  private:
-  Tick now_ = 0, stepped_ = 0;
+  Tick now_{}, stepped_{};
 };
 
 }  // namespace brick

@@ -2,9 +2,7 @@
 
 namespace brick {
 
-MacroIc::MacroIc(const sc_core::sc_module_name& name) : sc_module(name), regs_("regs"), clock_gen_("clock_gen") {
-  apply_registers();
-}
+MacroIc::MacroIc(const sc_core::sc_module_name& name) : sc_module(name), regs_("regs"), clock_gen_("clock_gen") {}
 
 void MacroIc::reset(Tick t) {
   regs_.reset();
@@ -18,7 +16,6 @@ void MacroIc::write(bool x, unsigned offset, std::uint32_t value) {
 }
 
 void MacroIc::set_gate(bool gate) {
-  if (regs_.gate == gate) return;
   regs_.gate = gate;
   apply_registers();
 }

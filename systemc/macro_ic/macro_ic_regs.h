@@ -15,7 +15,7 @@ namespace brick {
 
 class MacroIcRegs : public sc_core::sc_module {
  public:
-  explicit MacroIcRegs(const sc_core::sc_module_name& name) : sc_module(name) { reset(); }
+  explicit MacroIcRegs(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   bool gate = false;  // input: 1 = MACROGATE, 0 = DSPGATE2
 
@@ -59,7 +59,7 @@ class MacroIcRegs : public sc_core::sc_module {
     return i;
   }
 
-  std::array<std::uint32_t, kRegister.size()> word_;
+  std::array<std::uint32_t, kRegister.size()> word_{};
 };
 
 }  // namespace brick

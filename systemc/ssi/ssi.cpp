@@ -122,10 +122,10 @@ void Ssi::advance(Tick t) {
   }
 }
 
+// The pins as they are seen inside follow those outside before a frame can begin, and stay.
 void Ssi::reset(Tick t) {
   group_ = {};
-  clk_ = data1_ = data2_ = 0xFF;
-  phase_ = servo_ = true;
+  clk_ = 0xFF;
   now_ = t;
 }
 

@@ -18,7 +18,7 @@ class Ssi final : public sc_core::sc_module, public ModelBlock {
 
   static constexpr unsigned kPage = 0x3F;  // registers are words of a page of 64 addresses
 
-  explicit Ssi(const sc_core::sc_module_name& name) : sc_module(name) { reset(0); }
+  explicit Ssi(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   bool geo = false;                 // strap: which product
   bool phase = true, servo = true;  // nets
@@ -78,9 +78,9 @@ class Ssi final : public sc_core::sc_module, public ModelBlock {
   void load(Group& g);
 
   std::array<Group, kGroups> group_;
-  std::uint8_t clk_, data1_, data2_;  // pins out; pins in, two stages
-  bool phase_, servo_;                // as the last edge saw them
-  Tick now_;
+  std::uint8_t clk_{}, data1_{}, data2_{};  // pins out; pins in, two stages
+  bool phase_{}, servo_{};                  // as the last edge saw them
+  Tick now_{};
 };
 
 }  // namespace brick

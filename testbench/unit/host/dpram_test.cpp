@@ -332,6 +332,27 @@ TEST_F(DpramTest, SleepsWhileNothingMoves) {
   }
 }
 
+// A strobe of ours asks for the edges of the stages that it passes and of the write two edges behind them; one of
+// another device for none, nor does an address that moves without a select.
+TEST_F(DpramTest, AsksForNoMoreEdgesThanAStrobeHasStages) {
+  const auto asked = [&](auto act) {
+    const std::size_t before = both.events();
+    act();
+    both.ref(8);
+    return both.events() - before;
+  };
+  for (const bool read : {true, false}) {
+    const auto start = [&] { read ? cpu_start_read(8) : cpu_start_write(8, 1); };
+    EXPECT_LE(asked(start), 5u) << read;
+    EXPECT_LE(asked([&] { cpu_end(); }), 5u) << read;
+    const auto of_others = [&] { start(), both.in.cpu_sel = false; };
+    EXPECT_EQ(asked(of_others), 0u) << read;
+    EXPECT_EQ(asked([&] { cpu_end(), both.in.cpu_addr = 77; }), 0u) << read;
+    EXPECT_LE(asked([&] { host_start(8, read); }), 1u) << "the grant";
+    EXPECT_LE(asked([&] { both.in.mem_sel = false; }), 1u) << "its end";
+  }
+}
+
 TEST_F(DpramTest, StrobesOfOtherDevicesDoNotWait) {
   cpu_start_read(6);
   both.in.cpu_sel = false;

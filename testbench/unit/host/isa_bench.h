@@ -18,7 +18,8 @@ class IsaBench {
 
   // `on_a_board`: as a board has it, which takes no notice of the ends of most reads (systemc/host/isa_slave.h).
   explicit IsaBench(bool on_a_board = false)
-      : model("isa_slave"), both(make_rtl_isa_slave(on_a_board), model, on_a_board ? show_on_a_board : show) {
+      : model(sc_core::sc_gen_unique_name("isa_slave")),
+        both(make_rtl_isa_slave(on_a_board), model, on_a_board ? show_on_a_board : show) {
     if (on_a_board) model.leave_ends_out();
     both.ticks(12);  // switches are taken over, the bus is idle
   }

@@ -204,6 +204,56 @@ TEST_F(IsaSlaveTest, SleepsWhileNothingMoves) {
   EXPECT_TRUE(rests()) << "RESETDRV";
 }
 
+// An edge is asked for where the cycle moves on, as docs/isa_slave.md has it: start, data or what stands for it, end
+// and the clock after it; and one of clk_pwm where a read lets go of SD, three while a read of the interrupt controller
+// may act. On a board the end of a read shows at the receive register alone.
+TEST_F(IsaSlaveTest, AsksForNoMoreEdgesThanTheCycleHasSteps) {
+  const struct {
+    unsigned address;
+    bool Inputs::*command;
+    std::size_t steps, on_a_board;
+  } cycles[] = {{0x212, &Inputs::isa_ior_n, 5, 3},    {0x217, &Inputs::isa_ior_n, 5, 5},
+                {0x21A, &Inputs::isa_ior_n, 8, 6},    {0x21C, &Inputs::isa_ior_n, 5, 3},
+                {0x217, &Inputs::isa_iow_n, 4, 4},    {0x21C, &Inputs::isa_iow_n, 4, 4},
+                {0xD0000, &Inputs::isa_memr_n, 6, 6}, {0xD0000, &Inputs::isa_memw_n, 4, 4},
+                {0x220, &Inputs::isa_ior_n, 4, 2},    {0xE0000, &Inputs::isa_memw_n, 4, 4}};
+  IsaBench board(true);
+  for (IsaBench* bench : {static_cast<IsaBench*>(this), &board})
+    for (const auto& cycle : cycles) {
+      bench->set_address(cycle.address);
+      bench->ticks(20);
+      const std::size_t before = bench->both.events();
+      bench->both.in.*cycle.command = false;
+      bench->ticks(63);
+      bench->both.in.*cycle.command = true;
+      bench->ticks(20);
+      EXPECT_LE(bench->both.events() - before, bench == this ? cycle.steps : cycle.on_a_board)
+          << std::hex << cycle.address << (bench == this ? "" : ", on a board");
+    }
+  EXPECT_LOCKSTEP(board.both);
+}
+
+// Nor for any where nothing but addresses and data move, unless MEMCS16# does.
+TEST_F(IsaSlaveTest, AsksForNoEdgeBetweenCycles) {
+  set_address(0xE0000);
+  ticks(20);
+  const std::size_t before = both.events();
+  for (unsigned block = 0; block < 0x80; ++block) {
+    if (block == 0xD0000 >> 17) continue;
+    set_address(block << 17 | block);
+    both.in.isa_sd = static_cast<std::uint16_t>(block * 0x123);
+    both.in.isa_aen = block % 2;
+    both.in.isa_sbhe_n = block % 3 == 0;
+    ticks(static_cast<int>(block % 7));
+  }
+  ticks(12);
+  EXPECT_EQ(both.events(), before);
+  set_address(0xD0000);
+  ticks(12);
+  EXPECT_EQ(both.events(), before + 1) << "MEMCS16#";
+  both.in.isa_aen = both.in.isa_sbhe_n = false;
+}
+
 TEST_F(IsaSlaveTest, ReadDataStaysWhileTheRegisterChanges) {
   both.in.isa_sa = 0x212;
   ticks(11);

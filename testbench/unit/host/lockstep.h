@@ -1,7 +1,7 @@
 // A model and its Verilated twin, driven with the same inputs and compared at every tick, outputs and combinational
 // reads alike. It also holds the model to its promise: next_event() must not be later than the next change of an
-// output. While the model is judged it is asleep as long as its inputs rest and it promises nothing, and its twin is a
-// second one that is awake at every edge.
+// output, nor an edge that has passed. While the model is judged it is asleep as long as its inputs rest and it
+// promises nothing, and its twin is a second one that is awake at every edge.
 #pragma once
 
 #include <functional>
@@ -35,7 +35,7 @@ class Lockstep {
   Lockstep(RtlBlock<Inputs, Outputs> rtl, Model& model, Show show) : rtl_(std::move(rtl)), model_(model), show_(show) {
     model_.reset(0);
     if (model_judged()) {
-      awake_ = std::make_unique<Model>("awake");
+      awake_ = std::make_unique<Model>(sc_core::sc_gen_unique_name("awake"));
       awake_->reset(0);
     }
   }
@@ -48,7 +48,9 @@ class Lockstep {
     apply();
     const Outputs before = judged();
     const Tick promised = model_.next_event();
+    if (promised <= now()) note("next_event() said tick " + std::to_string(promised) + ", which has passed");
     ++now_;
+    if (promised <= now()) ++events_;
     if (awake_)
       awake_->advance(now());
     else
@@ -86,6 +88,7 @@ class Lockstep {
 
   Tick now() const { return now_; }
   bool asleep() const { return model_.next_event() == kNever; }  // the model, until an input moves
+  std::size_t events() const { return events_; }                 // edges that the model has asked for
   // First difference of the two, "" while they agree.
   const std::string& difference() const { return difference_; }
 
@@ -128,6 +131,7 @@ class Lockstep {
   Inputs applied_ = Inputs();
   Show show_;
   Tick now_ = 0;
+  std::size_t events_ = 0;
   std::string difference_;
 };
 
