@@ -160,7 +160,7 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
   struct IcAccess {  // of the CPU to a register of an IC, or of the serial encoder inputs
     bool read = false, write = false, ssi = false;
     unsigned number = 0;
-    BusSync::Where where;
+    BusSync::Where where{};
     std::uint32_t wdata = 0;
   };
 
@@ -234,9 +234,9 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
   GateIcs gate_ics_;
 
   BoardInputs inputs_;
-  Straps straps_ = Straps::none();  // as taken over on clk_ref
-  AddressSelect select_;            // of the address in bus_sync, while a strobe is shown
-  bool strobe_wired_ = false;       // and the blocks of the buses have it
+  Straps straps_;              // as taken over on clk_ref
+  AddressSelect select_;       // of the address in bus_sync, while a strobe is shown
+  bool strobe_wired_ = false;  // and the blocks of the buses have it
   // The board is in reset up to reset_end_, kNever while the pin is low: rtl/common/reset_sync.sv. From the first edge
   // of clk_ref that sees the pin high it is one period of clk_ref and two edges of clk_pwm.
   static constexpr Tick kResetRelease = kTicksPerRef + 2;
@@ -246,13 +246,13 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
   Tick now_ = 0;
 
   std::array<Tick, kBlocks> next_{};  // event of each block, as long as its inputs stay as they are
-  Tick seldom_ = 0, first_ = 0;       // of those from kBusy on, of all
-  Tick next_own_ = kNever;            // the board's: what follows a pin without a clock
-  Parts touched_ = 0;                 // blocks that have executed the edges up to now() and must be asked anew
-  Parts shown_ = kEverything;         // what may have changed at the last edge
-  bool straps_differ_ = true;         // from the pins
-  std::uint32_t lines_ = 0;           // of the interrupt controller, but for HREQ
-  std::uint32_t equ_ = 0;             // of the ICs, as wired to the interrupt controller
+  Tick seldom_{}, first_{};           // of those from kBusy on, of all
+  Tick next_own_{};                   // the board's: what follows a pin without a clock
+  Parts touched_{};                   // blocks that have executed the edges up to now() and must be asked anew
+  Parts shown_{};                     // what may have changed at the last edge
+  bool straps_differ_{};              // from the pins
+  std::uint32_t lines_{};             // of the interrupt controller, but for HREQ
+  std::uint32_t equ_{};               // of the ICs, as wired to the interrupt controller
   BoardOutputs outputs_, stop_on_;
   std::array<MotorOutputs, kMaxServoIcs> motor_outputs_, stop_on_motor_, watched_motor_;
 };

@@ -25,14 +25,13 @@ class BusRead {
   void take_nothing() { oe_ = false; }
   void reset() {
     data_ = 0;
-    of_ = 0;
     oe_ = false;
   }
 
  private:
-  std::uint32_t data_ = 0;
-  std::uint8_t of_ = 0, falls_ = 0;
-  bool rd_n_ = true, oe_ = false;
+  std::uint32_t data_{};
+  std::uint8_t of_{}, falls_{};
+  bool rd_n_{}, oe_{};
 };
 
 }  // namespace brick

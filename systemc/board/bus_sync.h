@@ -19,10 +19,10 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
   explicit BusSync(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   struct Where {
-    std::uint32_t addr = 0;
-    std::uint8_t aa = 0;
-    bool x = false;
-    bool internal = false;  // on-chip peripheral page
+    std::uint32_t addr;
+    std::uint8_t aa;
+    bool x;
+    bool internal;  // on-chip peripheral page
 
     bool own() const { return internal || (aa & 2) != 0 || aa == 0; }  // a register region
   };
@@ -84,9 +84,9 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
  private:
   // A strobe's pins, what the stages of clk_pwm show, and the access.
   struct Strobe {
-    std::uint8_t falls0 = 0, falls1 = 0, falls2 = 0, falls3 = 0, seen = 0;
-    bool low0 = false, low1 = false, low2 = false;
-    bool taken = false, shown = false;
+    std::uint8_t falls0, falls1, falls2, falls3, seen;
+    bool low0, low1, low2;
+    bool taken, shown;
 
     void set(std::uint8_t falls, bool low) {
       falls0 = falls;
@@ -125,10 +125,10 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
     }
   };
 
-  Where pins0_, pins_, where_;
-  std::uint32_t wdata0_ = 0, wdata_ = 0;
-  Strobe rd_, wr_;
-  Tick now_ = 0;
+  Where pins0_{}, pins_{}, where_{};
+  std::uint32_t wdata0_{}, wdata_{};
+  Strobe rd_{}, wr_{};
+  Tick now_{};
 };
 
 }  // namespace brick

@@ -92,12 +92,12 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
   }
 
   Drivers q_;
-  Sync2 ext_phase_{true, true}, ext_servo_{true, true};
-  std::uint32_t phase_level_q_ = ~0u, servo_level_q_ = ~0u;  // of the ICs, a tick later
-  bool phase_q_ = true, servo_q_ = true;                     // the nets
-  bool conflict_ = false;
-  Tick disagree_ = 0;  // ticks for which they have, kTolerated at most
-  Tick now_ = 0;
+  Sync2 ext_phase_, ext_servo_;
+  std::uint32_t phase_level_q_{}, servo_level_q_{};  // of the ICs, a tick later
+  bool phase_q_{}, servo_q_{};                       // the nets
+  bool conflict_{};
+  Tick disagree_{};  // ticks for which they have, kTolerated at most
+  Tick now_{};
 };
 
 }  // namespace brick

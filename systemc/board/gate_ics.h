@@ -92,12 +92,12 @@ class GateIcs {
   std::array<ClockFollower*, kIcs> follower_{};
   std::array<std::unique_ptr<ClockGen>, kIcs> driver_;
   ClockHistory history_;
-  bool phase_ = true, servo_ = true, trip_ = false;
-  std::uint32_t macro_gates_ = 0;
+  bool phase_{}, servo_{}, trip_{};
+  std::uint32_t macro_gates_{};
 
   ClockSelect::Drivers drivers_;
   std::uint32_t drives_ = 0;  // ICs that drive PHASE or SERVO
-  std::uint32_t phase_levels_ = ~0u, servo_levels_ = ~0u;
+  std::uint32_t phase_levels_{}, servo_levels_{};
   std::uint32_t watched_ = 0, looked_ = 0, equ_ = 0, interrupting_ = 0;
   std::array<MotorOutputs, kServoIcs> watched_outputs_{};
   std::array<Tick, kServoIcs> look_{};

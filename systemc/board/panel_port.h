@@ -34,7 +34,7 @@ class PanelPort : public sc_core::sc_module, public RefClockedBlock {
   }
   void reset_registers() override { jpan1_ = jpan2_ = kIdle; }
 
-  std::uint16_t jpan1_ = kIdle, jpan2_ = kIdle;
+  std::uint16_t jpan1_{}, jpan2_{};
 };
 
 }  // namespace brick

@@ -62,10 +62,10 @@ class Watchdog final : public sc_core::sc_module, public ModelBlock {
   std::int64_t edge_at(Tick t) const { return t / kTicksPerRef - first_; }  // clk_ref edges executed since reset
   Tick tick_of(std::int64_t edge) const { return (edge + first_) * kTicksPerRef; }
 
-  std::int64_t first_ = 0, edge_ = 0, strobe_end_ = end_after(0), servo_end_ = end_after(0);
-  bool servo1_ = true, servo2_ = true;  // SERVO, two stages on clk_ref
-  bool good1_ = true, good2_ = true;    // 5 V, the same
-  bool trip_ = false, relay_ = false;
+  std::int64_t first_{}, edge_{}, strobe_end_{}, servo_end_{};
+  bool servo1_{}, servo2_{};  // SERVO, two stages on clk_ref
+  bool good1_{}, good2_{};    // 5 V, the same
+  bool trip_{}, relay_{};
 };
 
 }  // namespace brick

@@ -42,8 +42,8 @@ class ChannelDivider {
 
  private:
   ChannelDivider(Tick next, Tick start, unsigned n) : next_(next), start_(start), n_(n) {}
-  Tick next_ = kTicksPerRef, start_ = 0;
-  unsigned n_ = 0;
+  Tick next_{}, start_{};
+  unsigned n_{};
 };
 
 // Common part of a serial stream: 24 bits of a strobe word from the first bit clock not before the rising edge of
@@ -136,11 +136,11 @@ class ChannelStrobe {
 
  private:
   ChannelDivider divider_;
-  Tick now_ = 0;
-  bool pending_ = false;
-  Tick asked_ = kNever;
-  unsigned left_ = 0;
-  std::uint32_t word_ = 0;
+  Tick now_{};
+  bool pending_{};
+  Tick asked_{};
+  unsigned left_{};
+  std::uint32_t word_{};
 };
 
 }  // namespace brick

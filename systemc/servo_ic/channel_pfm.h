@@ -43,17 +43,13 @@ class ChannelPfm {
       pulse_ = event_ = true;
       down_ = negative(in);
     } else if (k > left_) {
-      left_ = 0;
       pulse_ = false;
     } else {
       left_ -= k;
     }
     return begins;
   }
-  void stop() {  // any edge of clk_ref without `run`
-    left_ = 0;
-    pulse_ = false;
-  }
+  void stop() { pulse_ = false; }  // any edge of clk_ref without `run`
 
  private:
   static constexpr std::int64_t kRange = 1 << 24;
@@ -64,7 +60,7 @@ class ChannelPfm {
     return std::min<std::int64_t>(negative(in) ? kRange - command : command, kLimit);
   }
 
-  std::int64_t acc_ = 0, left_ = 0;
+  std::int64_t acc_ = 0, left_ = 0;  // left_: of a pulse
   bool pulse_ = false, down_ = false, event_ = false;
 };
 

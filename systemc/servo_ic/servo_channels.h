@@ -24,17 +24,16 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
 
   // Seen by the edges to come.
   struct Inputs {
-    bool trip = false;
-    std::uint32_t clock_control = 0;  // the word, for its dividers (I7m03)
-    std::uint32_t dac_strobe = 0;     // I7m05
-    std::uint32_t adc_strobe = 0;     // I7m06
-    unsigned deadtime = 0;            // I7m04
-    TriangleLine line;                // the triangle from the next edge on
-    bool phase_rises = false, phase_falls = false,
-         servo_falls = false;           // turned over by each such edge of the clock chain
-    std::uint8_t adc_a = 0, adc_b = 0;  // bit n-1: channel n
+    bool trip;
+    std::uint32_t clock_control;                 // the word, for its dividers (I7m03)
+    std::uint32_t dac_strobe;                    // I7m05
+    std::uint32_t adc_strobe;                    // I7m06
+    unsigned deadtime;                           // I7m04
+    TriangleLine line;                           // the triangle from the next edge on
+    bool phase_rises, phase_falls, servo_falls;  // turned over by each such edge of the clock chain
+    std::uint8_t adc_a, adc_b;                   // bit n-1: channel n
   };
-  Inputs in;
+  Inputs in{};
   void set_adc(std::uint8_t a, std::uint8_t b) {  // a level that moves ends what send_adc() has given
     sends_ = sends_ && a == in.adc_a && b == in.adc_b;
     in.adc_a = a;
@@ -164,18 +163,18 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   bool sends_ = false;
   ConverterWords sent_{};
   int sent_from_ = 0;
-  bool phase_rises_ = false, phase_falls_ = false, servo_falls_ = false;  // at the last edge of clk_ref
-  Tick phase_rise_ = 0;                                                   // edge that took the last one
-  Tick marked_ = 0;
-  Tick now_ = 0;
+  bool phase_rises_{}, phase_falls_{}, servo_falls_{};  // at the last edge of clk_ref
+  Tick phase_rise_{};                                   // edge that took the last one
+  Tick marked_{};
+  Tick now_{};
   // The PWM acts on nothing inside: it has been executed up to here only and goes on along this line when somebody
   // looks at it or the line ends. Triangle, turnaround and dead time reach it a tick later (channel_triangle.sv).
-  mutable Tick pwm_now_ = 0;
+  mutable Tick pwm_now_{};
   mutable TriangleLine pwm_line_;
-  unsigned pwm_deadtime_ = kDeadtimeReset;
-  TriangleLine line_;    // where `in.line` is if its owner does not move it
-  bool turned_ = false;  // the last edge has left a turnaround
-  bool started_ = true;  // the last edge was the reset's
+  unsigned pwm_deadtime_{};
+  TriangleLine line_;  // where `in.line` is if its owner does not move it
+  bool turned_{};      // the last edge has left a turnaround
+  bool started_{};     // the last edge was the reset's
 };
 
 }  // namespace brick

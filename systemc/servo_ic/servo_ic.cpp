@@ -3,9 +3,7 @@
 namespace brick {
 
 ServoIc::ServoIc(const sc_core::sc_module_name& name)
-    : sc_module(name), regs_("regs"), clock_gen_("clock_gen"), channels_("channels") {
-  apply_registers();
-}
+    : sc_module(name), regs_("regs"), clock_gen_("clock_gen"), channels_("channels") {}
 
 void ServoIc::reset(Tick t) {
   regs_.reset();

@@ -66,7 +66,7 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
 
   ClockGen clock_gen_;
   ServoChannels channels_;
-  Tick now_ = 0, chain_edge_ = 0;  // the last edge of PHASE or SERVO inside
+  Tick now_{}, chain_edge_{};  // the last edge of PHASE or SERVO inside
 };
 
 }  // namespace brick

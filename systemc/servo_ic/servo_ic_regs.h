@@ -13,7 +13,7 @@ namespace brick {
 
 class ServoIcRegs : public sc_core::sc_module {
  public:
-  explicit ServoIcRegs(const sc_core::sc_module_name& name) : sc_module(name) { reset(); }
+  explicit ServoIcRegs(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   void reset() {
     for (unsigned i = 0; i < kRegister.size(); ++i) word_[i] = kRegister[i].reset;
@@ -55,7 +55,7 @@ class ServoIcRegs : public sc_core::sc_module {
     return i;
   }
 
-  std::array<std::uint32_t, kRegister.size()> word_;
+  std::array<std::uint32_t, kRegister.size()> word_{};
 };
 
 }  // namespace brick

@@ -1,6 +1,7 @@
 // RTL and model of a servo IC side by side, for what its channels do. Every tick compares all pins and the word at the
-// present address, and holds the model to its promise: next_motor_event() is not later than the next change of a pin.
-// While the model is judged it sleeps until then, and its twin is a second one that is awake at every edge.
+// present address, and holds the model to its promises: next_motor_event() is not later than the next change of a pin,
+// of the strobes where these are asked for alone, nor next_equ_event() than that of an EQU. While the model is judged
+// it sleeps until then, and its twin is a second one that is awake at every edge.
 #pragma once
 
 #include <cstdint>
@@ -25,10 +26,15 @@ constexpr std::uint32_t kOwnClocks =
     regs::servo_ic::kClockControl.reset &  // default dividers, PHASE and SERVO driven
     ~(regs::servo_ic::clock_control::kPhaseExternal.mask() | regs::servo_ic::clock_control::kServoExternal.mask());
 
+// Bits of ChannelPins::serial, and those of the packed pins.
+constexpr unsigned kStrobesOfSerial = 1u << 1 | 1u << 3;
+constexpr MotorOutputs kStrobes{{0, kStrobesOfSerial << motor_pin::kDacClk.lsb, 0, 0, 0, 0}};
+
 class ChannelsRig {
  public:
   ChannelsRig() {
     if (model_judged()) awake_ = std::make_unique<ServoIc>(sc_core::sc_gen_unique_name("awake"));
+    each([](ServoIc& ic) { ic.reset(0); });
   }
 
   ServoIcInputs in = ServoIcInputs();  // with zeros between the fields
@@ -37,7 +43,8 @@ class ChannelsRig {
 
   void tick() {
     apply();
-    const Tick promised = model_.next_motor_event();
+    const Tick promised = model_.next_motor_event(), of_strobes = model_.next_motor_event(kStrobes),
+               of_equ = model_.next_equ_event((1u << kChannels) - 1);
     const ChannelPins before = judged();
     ++now_;
     const bool ref = now_ % kTicksPerRef == 0;
@@ -57,8 +64,14 @@ class ChannelsRig {
       if (in.we && mutate) mutate(in.x, in.addr, value);
       if (in.we) model_.write(in.x, in.addr, value);
     }
-    if (!(judged() == before) && promised > now_ && in.rst_n && !strobe)
-      note("a pin changed, next_motor_event() said", now_, promised);
+    if (in.rst_n && !strobe) {
+      const ChannelPins after = judged();
+      if (!(after == before) && promised > now_) note("a pin changed, next_motor_event() said", now_, promised);
+      if (((after.serial ^ before.serial) & kStrobesOfSerial) != 0 && of_strobes > now_)
+        note("a strobe changed, next_motor_event() said", now_, of_strobes);
+      if ((after.others ^ before.others) >> 4 * kEqu != 0 && of_equ > now_)
+        note("an EQU changed, next_equ_event() said", now_, of_equ);
+    }
     compare();
   }
   void ticks(Tick n) {
@@ -123,6 +136,11 @@ class ChannelsRig {
   bool pwm(unsigned channel, unsigned bit) { return (pins().pwm >> (6 * (channel - 1) + bit) & 1) != 0; }
   bool other(unsigned group, unsigned channel) { return (pins().others >> (4 * group + channel - 1) & 1) != 0; }
   Tick now() const { return now_; }
+  Tick next_equ_event(unsigned channel) {  // of the model
+    apply();
+    advance(now_);
+    return model_.next_equ_event(1u << (channel - 1));
+  }
   std::string difference;
 
  private:
