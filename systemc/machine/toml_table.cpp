@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -26,9 +27,42 @@ std::string found_text(const toml::node& node) {
   return text.size() > kShownCharacters ? text.substr(0, kShownCharacters) + "..." : text;
 }
 
+// Behind the string that begins at `at`; up to two more of its quotation marks belong to one in three.
+std::size_t string_end(const std::string& text, std::size_t at) {
+  const char quote = text[at];
+  const bool of_lines = text.compare(at, 3, std::string(3, quote)) == 0;
+  const std::string end = of_lines ? std::string(3, quote) : std::string(1, quote);
+  for (at += end.size(); at < text.size(); ++at) {
+    if (text.compare(at, end.size(), end) == 0) {
+      at += end.size();
+      for (int more = 0; of_lines && more < 2 && at < text.size() && text[at] == quote; ++more) ++at;
+      return at;
+    }
+    if (text[at] == '\n' && !of_lines) return at;
+    if (text[at] == '\\' && quote == '"') ++at;
+  }
+  return text.size();
+}
+
+// toml++ counts brackets, but not the parts of a key: it goes one call deeper for each until the stack ends.
+void check_depth(const std::string& text, const std::string& path) {
+  constexpr std::size_t kMostDots = 64;  // in a row: a.b.c, "a" . 'b'
+  std::size_t dots = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    if (c == '.' && ++dots > kMostDots)
+      throw UsageError(fmt::format("{}:{}: a key of more than {} parts; expected fewer", path,
+                                   1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'),
+                                   kMostDots));
+    if (std::string_view("\n,=[]{}#").find(c) != std::string_view::npos) dots = 0;
+    at = c == '"' || c == '\'' ? string_end(text, at) : c == '#' ? std::min(text.find('\n', at), text.size()) : at + 1;
+  }
+}
+
 }  // namespace
 
 toml::table parse_toml(const std::string& text, const std::string& path) {
+  check_depth(text, path);
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& e) {

@@ -272,6 +272,23 @@ TEST(BoardFile, ErrorsSayWhereWhatWasFoundAndWhatWasExpected) {
 }
 
 // Boards that no product is: each breaks one rule of its family.
+// Of text that people or programs have made: a stack has an end.
+TEST(BoardFile, KeysHaveAnEnd) {
+  const auto parts = [](unsigned count, const std::string& part) {
+    std::string text = "a";
+    for (unsigned i = 1; i < count; ++i) text += part;
+    return text;
+  };
+  for (const std::string& text :
+       {parts(100'000, ".a") + " = 1", "[" + parts(100'000, ".a") + "]", parts(66, " . \"b.c\"") + " = 1",
+        "x = { " + parts(66, ".'a'") + " = 1 }", "x = [\"\"\"a\"\"\"\", {" + parts(66, ".a") + " = 1}]",
+        "x = 'it\\'\n" + parts(66, ".a") + " = 1"})
+    EXPECT_THAT(error_of(text), AllOf(HasSubstr(": a key of more than 64 parts"), HasSubstr("expected")));
+  const std::string dots(100, '.');
+  EXPECT_EQ(error_of(with("title", "title = \"" + dots + "\\\"\" # it's " + dots)), "no error");
+  EXPECT_THAT(error_of(parts(65, ".a") + " = 1"), HasSubstr("unknown key a"));
+}
+
 TEST(BoardFile, ImpossibleBoardsAreRefused) {
   const struct {
     const char *family, *key, *line, *expected;
