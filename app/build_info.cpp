@@ -45,14 +45,16 @@ void add_origin(nlohmann::json& results, const std::string& firmware) {
   if (!firmware.empty()) results["image"] = {{"file", utf8_text(firmware)}, {"hash", file_hash(firmware)}};
 }
 
-std::string file_hash(const std::string& path) {
+std::string text_hash(const std::string& bytes) {
   constexpr std::uint64_t kOffset = 0xcbf29ce484222325, kPrime = 0x100000001b3;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return "";
   std::uint64_t hash = kOffset;
-  for (std::istreambuf_iterator<char> at(file), end; at != end; ++at)
-    hash = (hash ^ static_cast<unsigned char>(*at)) * kPrime;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * kPrime;
   return fmt::format("{:016x}", hash);
+}
+
+std::string file_hash(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return file ? text_hash({std::istreambuf_iterator<char>(file), {}}) : "";
 }
 
 }  // namespace brick

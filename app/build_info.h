@@ -17,7 +17,8 @@ std::string version_text(const std::string& firmware = "");
 // What made the results of a run: build, image ("" for none) and command line.
 void add_origin(nlohmann::json& results, const std::string& firmware);
 
-// FNV-1a of 64 bits, in hexadecimal; "" of a file that cannot be read.
-std::string file_hash(const std::string& path);
+// FNV-1a of 64 bits, in hexadecimal.
+std::string text_hash(const std::string& bytes);
+std::string file_hash(const std::string& path);  // "" of one that cannot be read
 
 }  // namespace brick

@@ -1,7 +1,6 @@
 #include "app/regress/covers.h"
 
 #include <algorithm>
-#include <fstream>
 
 namespace brick::regress {
 
@@ -10,8 +9,7 @@ bool MergedCover::reached() const {
 }
 
 void Coverage::add(std::size_t run, const std::string& engine, const std::string& folder) {
-  std::ifstream file(folder + "/run.json");
-  const nlohmann::json result = file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
+  const nlohmann::json result = json_of(folder + "/run.json");
   if (!result.is_object() || !result.contains("covers")) return;
   Of of{run, engine, {}};
   std::map<std::string, std::uint64_t> least;

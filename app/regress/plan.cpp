@@ -13,7 +13,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/build_info.h"
 #include "app/options.h"
+#include "app/regress/result.h"
 #include "app/time_text.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/machine/toml_table.h"
@@ -68,7 +70,7 @@ void add_seeds(const TomlTable& row, const toml::node& node, std::vector<std::ui
     last = parse_count("seeds", text->substr(dash + 1));
   } catch (const UsageError&) { row.fail(node, "seeds", kSeedsText); }
   if (last < first || last - first >= kMostSeeds) row.fail(node, "seeds", kSeedsText);
-  for (std::uint64_t seed = first; seed <= last; ++seed) seeds.push_back(seed);
+  for (std::uint64_t behind = 0; behind <= last - first; ++behind) seeds.push_back(first + behind);
 }
 
 std::vector<std::uint64_t> seeds_of(const TomlTable& row, std::mt19937_64& draw) {
@@ -103,6 +105,8 @@ double limit_of(const TomlTable& row) {
   if (!(seconds >= 0.001 && seconds <= kLongestLimit)) row.fail(row.need("limit"), "limit", kLimitText);
   return seconds;
 }
+
+bool is_board_file(const std::string& name) { return fs::path(name).extension() == ".toml"; }
 
 bool is_pattern(const std::string& name) { return name.find_first_of("*?[") != std::string::npos; }
 
@@ -148,17 +152,16 @@ class Reader {
 
  private:
   void add(Run run) {
-    const auto [at, is_new] = names_.emplace(run.name, plan_.runs.size());
-    if (!is_new && plan_.runs[at->second].words == run.words) {  // two rows ask for it
+    const auto other = [&](const auto& at) { return at != names_.end() && plan_.runs[at->second].words != run.words; };
+    auto at = names_.find(run.name);
+    for (; other(at); at = names_.find(run.name)) run.name += "." + text_hash(command_text(run.words));
+    if (at != names_.end()) {  // two rows ask for it
       Run& before = plan_.runs[at->second];
       before.limit_seconds = std::max(before.limit_seconds, run.limit_seconds);
       before.alone = before.alone || run.alone;
       return;
     }
-    if (!is_new) {
-      run.name = fmt::format("{}.{}", run.name, plan_.runs.size());
-      names_.emplace(run.name, plan_.runs.size());
-    }
+    names_.emplace(run.name, plan_.runs.size());
     if (plan_.runs.size() == kMostRuns)
       throw UsageError(fmt::format("{}: makes more than {} runs; expected fewer", path_, kMostRuns));
     plan_.runs.push_back(std::move(run));
@@ -194,9 +197,9 @@ class Reader {
                     const std::vector<std::uint64_t>& seeds, double limit) {
     RunOptions options;
     options.engine = choice.engine;
-    options.board = choice.board;
+    options.board = is_board_file(choice.board) ? file_path(choice.board) : choice.board;
     if (!choice.aperture.empty()) options.aperture = choice.aperture;
-    options.firmware = firmware_path(choice.firmware);
+    options.firmware = choice.firmware.empty() ? "" : file_path(choice.firmware);
     const MachineConfig config = checked(row, options);
     if (!bench.need.met(config.board)) {
       if (by_pattern) return;
@@ -210,7 +213,8 @@ class Reader {
     run.group = bench.name;
     run.engine = choice.engine;
     run.limit_seconds = limit;
-    std::vector<std::string> words{"brick", "run", bench.name, "--engine", choice.engine, "--board", choice.board};
+    constexpr std::size_t kEngineWord = 4;
+    std::vector<std::string> words{"brick", "run", bench.name, "--engine", choice.engine, "--board", options.board};
     std::string others = config.board.name;
     const auto also = [&](const std::string& option, const std::string& value, const std::string& shown) {
       words.insert(words.end(), {option, value});
@@ -231,17 +235,18 @@ class Reader {
     run.column = fmt::format("{} {}", choice.engine, others);
     for (const std::uint64_t seed : seeds) {
       run.seed = seed;
-      run.choice = fmt::format("{} {} seed {}", bench.name, others, seed);
       run.words = words;
       run.words.insert(run.words.end(), {"--seed", std::to_string(seed)});
+      std::vector<std::string> same = run.words;
+      same[kEngineWord] = "";
+      run.choice = command_text(same);
       run.name = folder_text(fmt::format("{}.{}.seed-{}", bench.name, run.column, seed));
       add(run);
     }
   }
 
   // A file beside the plan, or where the caller stands.
-  std::string firmware_path(const std::string& file) const {
-    if (file.empty()) return file;
+  std::string file_path(const std::string& file) const {
     const fs::path beside = fs::path(path_).parent_path() / file;
     return fs::absolute(fs::exists(beside) ? beside : fs::path(file)).string();
   }

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
+#include "app/byte_text.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick::regress {
@@ -35,6 +37,14 @@ std::string headline(const Bucket& bucket) {
   if (!bucket.step.empty()) text += ", " + bucket.step;
   if (!bucket.says.empty()) text += ": " + bucket.says;
   return text;
+}
+
+// XML has no control characters but the ends of lines, which a command may hold.
+std::string readable_lines(const std::string& text) {
+  std::stringstream in(text);
+  std::string lines;
+  for (std::string line; std::getline(in, line);) lines += readable_text(line) + (in.eof() ? "" : "\n");
+  return lines;
 }
 
 }  // namespace
@@ -90,7 +100,7 @@ std::string junit_text(const Report& report) {
   const Plan& plan = report.plan;
   pugi::xml_document document;
   pugi::xml_node suites = document.append_child("testsuites");
-  suites.append_attribute("name") = plan.title.c_str();
+  suites.append_attribute("name") = readable_text(plan.title).c_str();
   struct Sum {
     pugi::xml_node suite;
     unsigned runs = 0, failures = 0, errors = 0, skipped = 0;
@@ -102,15 +112,15 @@ std::string junit_text(const Report& report) {
     Sum& sum = sums[run.group];
     if (!sum.suite) {
       sum.suite = suites.append_child("testsuite");
-      sum.suite.append_attribute("name") = run.group.c_str();
+      sum.suite.append_attribute("name") = readable_text(run.group).c_str();
     }
     pugi::xml_node test = sum.suite.append_child("testcase");
-    test.append_attribute("classname") = run.group.c_str();
-    test.append_attribute("name") = run.name.c_str();
+    test.append_attribute("classname") = readable_text(run.group).c_str();
+    test.append_attribute("name") = readable_text(run.name).c_str();
     ++sum.runs;
     if (!report.results[i] || report.results[i]->skipped()) {
       test.append_child("skipped").append_attribute("message") =
-          report.results[i] ? report.results[i]->says.c_str() : "not run";
+          report.results[i] ? readable_text(report.results[i]->says).c_str() : "not run";
       ++sum.skipped;
       continue;
     }
@@ -123,8 +133,8 @@ std::string junit_text(const Report& report) {
     pugi::xml_node what = test.append_child(failure ? "failure" : "error");
     what.append_attribute("type") = result.verdict.c_str();
     what.append_attribute("message") =
-        (result.step.empty() ? result.says : fmt::format("{}: {}", result.step, result.says)).c_str();
-    what.append_child(pugi::node_pcdata).set_value(command_text(run.words).c_str());
+        readable_text(result.step.empty() ? result.says : fmt::format("{}: {}", result.step, result.says)).c_str();
+    what.append_child(pugi::node_pcdata).set_value(readable_lines(command_text(run.words)).c_str());
   }
   for (auto& [name, sum] : sums) {
     sum.suite.append_attribute("tests") = sum.runs;

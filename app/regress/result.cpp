@@ -39,13 +39,15 @@ std::string host_name() {
   return gethostname(name, sizeof name - 1) == 0 ? name : "";
 }
 
-nlohmann::json json_of(const std::string& file) {
-  std::ifstream in(file);
-  return in ? nlohmann::json::parse(in, nullptr, false) : nlohmann::json();
+// A run may leave anything under the names of its results: a pipe would be waited at, a folder cannot be read.
+bool is_file(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
 }
 
 // The last line that tells of a failure, else the last line; of a long output its end is looked at.
 std::string last_said(const std::string& file) {
+  if (!is_file(file)) return "";
   std::ifstream in(file, std::ios::binary);
   in.seekg(0, std::ios::end);
   const std::streamoff size = in.tellg();
@@ -118,6 +120,12 @@ std::string without_numbers(const std::string& text) {
 
 }  // namespace
 
+nlohmann::json json_of(const std::string& file) {
+  if (!is_file(file)) return {};
+  std::ifstream in(file);
+  return in ? nlohmann::json::parse(in, nullptr, false) : nlohmann::json();
+}
+
 Result judge(const Run& run, const Ended& ended, const std::string& folder) {
   Result result = steps_of(json_of(folder + "/run.json"));  // a bench of somebody else may leave one too
   result.wall_seconds = ended.seconds;
@@ -174,10 +182,13 @@ void keep(const Run& run, const Result& result, const nlohmann::json& build, con
   nlohmann::json content = result_json(run, result);
   content["build"] = build;
   const std::string file = folder + "/result.json", unfinished = file + ".new";
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  for (const std::string& taken : {unfinished, file})
+    if (!is_file(taken)) std::filesystem::remove_all(taken, failed);
   std::ofstream out(unfinished);
   out << text_of(content, 2) << '\n';
   out.close();
-  std::error_code failed;
   if (out) std::filesystem::rename(unfinished, file, failed);
   if (!out || failed) throw UsageError(fmt::format("{}: cannot be written; expected room for results", file));
 }

@@ -23,6 +23,9 @@ struct Result {
   bool skipped() const { return verdict == "skipped"; }
 };
 
+// What a run has left: null where it is no file, discarded where it is no JSON.
+nlohmann::json json_of(const std::string& file);
+
 // Of a run that has ended in `folder`.
 Result judge(const Run& run, const Ended& ended, const std::string& folder);
 

@@ -11,13 +11,13 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import xml.etree.ElementTree as xml
 
 import command
 from browser import Browser
 from command import brick, check
+from regress_folder import Folder, bucket
 
 MIXED = """
 title = "mixed"
@@ -46,30 +46,6 @@ command = ["sh", "-c", "echo no such thing >&2; exit 2"]
 name = "absent"
 command = ["/no/such/program"]
 """
-
-
-class Folder:
-    def __init__(self, plan):
-        self.kept = tempfile.TemporaryDirectory()
-        self.path = pathlib.Path(self.kept.name)
-        self.plan, self.out = self.path / "plan.toml", self.path / "out"
-        self.write(plan)
-
-    def write(self, plan):
-        self.plan.write_text(plan)
-
-    def regress(self, *options):
-        return brick("regress", str(self.plan), "-o", str(self.out), *options)
-
-    def report(self):
-        return json.loads((self.out / "report.json").read_text())
-
-    def verdicts(self):
-        return {r["name"]: r["verdict"] for r in self.report()["runs"]}
-
-
-def bucket(report, group):
-    return [b for b in report["buckets"] if b["group"] == group]
 
 
 def regress_mistakes():
@@ -189,6 +165,9 @@ def regress_rows():
                    "rotary-machining --engine systemc --board geobrick-lv-8 --size 50 --seed 1"):
         check(f"brick run {wanted}" in lines, f"{wanted} in {lines}")
     check(not folder.out.exists(), "--list has made something")
+    last = 2**64 - 1
+    seeds = Folder(f'[[row]]\nbench = "smoke"\nseeds = "{last - 1}-{last}"\n').regress("--list").stdout.split()[-1::-9]
+    check(seeds == [str(last), str(last - 1)], f"the last seeds that there are: {seeds}")
     for plan in sorted(pathlib.Path(__file__).resolve().parents[3].glob("plans/*.toml")):
         r = brick("regress", str(plan), "--list")
         check(r.returncode == 0 and len(r.stdout.splitlines()) >= 10, f"{plan.name}: {r.stderr}")
@@ -312,28 +291,6 @@ def regress_skips():
     folder.write(folder.plan.read_text().replace("[0, 77]", "[1, 77]"))
     r = folder.regress("--resume")
     check(r.returncode == 1 and "1 taken over" in r.stdout, f"a failure beside it: {r}")
-
-
-def regress_foreign():
-    """A run.json or words of somebody else, of any form, are no steps and no covers; every run has its verdict."""
-    files = ('{"steps": 5}', '{"steps": [5]}', '{"steps": [{"name": 3}]}', '{"simulated_ns": "long"}', "[1]", "{",
-             '{"covers": {"a": 3}}', '{"covers": [1]}', '{"covers": {"a": {"count": "x"}}}', '{"covers": 5}',
-             '{"covers": {"b": {"count": 1, "least": 0}}}')
-    folder = Folder('[[row]]\nname = "own"\n'
-                    'command = ["sh", "-c", "cp {plan}/$(({seed} / 2)).json run.json; exit $(({seed} % 2))"]\n'
-                    f'seeds = "0-{2 * len(files) - 1}"\n'
-                    '[[row]]\nname = "words"\ncommand = ["sh", "-c", "cat {plan}/words; exit 1"]\n')
-    for number, text in enumerate(files):
-        (folder.path / f"{number}.json").write_text(text)
-    (folder.path / "words").write_bytes(b"FAIL \xf9" + "é".encode() * 200)
-    r = folder.regress("--rank")
-    wanted = {f"own.seed-{n}": "failed" if n % 2 else "passed" for n in range(2 * len(files))}
-    check(r.returncode == 1 and folder.verdicts() == {**wanted, "words.seed-1": "failed"}, f"{r}")
-    covers = {c["name"]: (c["counts"], c["least"]) for c in folder.report()["covers"]}
-    check(covers == {"b": ({"own": 1}, 1)}, f"covers: {covers}")
-    check(folder.report()["ranked"][0]["adds"] == 1.0, "a least of nothing asks for one")
-    # 300 bytes: 9 of `FAIL <F9>`, which is a number here, and 145 times two; the next would be cut
-    check(bucket(folder.report(), "words")[0]["says"] == "FAIL <#>" + 145 * "é" + "...", "cut between characters")
 
 
 def sleepers(mark):

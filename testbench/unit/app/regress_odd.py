@@ -1,0 +1,63 @@
+"""brick regress: what runs leave that is no result, and runs that have the names of others.
+usage: regress_odd.py BRICK CASE"""
+import pathlib
+import shutil
+import xml.etree.ElementTree as xml
+
+import command
+from command import check
+from regress_folder import Folder, bucket
+
+
+def regress_foreign():
+    """A run.json or words of somebody else, of any form, are no steps and no covers; every run has its verdict."""
+    files = ('{"steps": 5}', '{"steps": [5]}', '{"steps": [{"name": 3}]}', '{"simulated_ns": "long"}', "[1]", "{",
+             '{"covers": {"a": 3}}', '{"covers": [1]}', '{"covers": {"a": {"count": "x"}}}', '{"covers": 5}',
+             '{"covers": {"b": {"count": 1, "least": 0}}}')
+    folder = Folder('[[row]]\nname = "own"\n'
+                    'command = ["sh", "-c", "cp {plan}/$(({seed} / 2)).json run.json; exit $(({seed} % 2))"]\n'
+                    f'seeds = "0-{2 * len(files) - 1}"\n'
+                    '[[row]]\nname = "words"\ncommand = ["sh", "-c", "cat {plan}/words; exit 1"]\n')
+    for number, text in enumerate(files):
+        (folder.path / f"{number}.json").write_text(text)
+    (folder.path / "words").write_bytes(b"FAIL \xf9" + "é".encode() * 200)
+    r = folder.regress("--rank")
+    wanted = {f"own.seed-{n}": "failed" if n % 2 else "passed" for n in range(2 * len(files))}
+    check(r.returncode == 1 and folder.verdicts() == {**wanted, "words.seed-1": "failed"}, f"{r}")
+    covers = {c["name"]: (c["counts"], c["least"]) for c in folder.report()["covers"]}
+    check(covers == {"b": ({"own": 1}, 1)}, f"covers: {covers}")
+    check(folder.report()["ranked"][0]["adds"] == 1.0, "a least of nothing asks for one")
+    # 300 bytes: 9 of `FAIL <F9>`, which is a number here, and 145 times two; the next would be cut
+    check(bucket(folder.report(), "words")[0]["says"] == "FAIL <#>" + 145 * "é" + "...", "cut between characters")
+
+
+def regress_odd_files():
+    """What has the name of a result and is no file hangs nobody up; every name can stand in XML."""
+    commands = ("mkdir run.json result.json", "mkfifo run.json result.json.new", "rm output.txt; mkfifo output.txt")
+    folder = Folder("".join(f'[[row]]\nname = "\\u0007{i}"\ncommand = ["sh", "-c", "{line}; exit 1", "\\u0001\\n"]\n'
+                            for i, line in enumerate(commands)))
+    r = folder.regress()
+    check(r.returncode == 1 and list(folder.verdicts().values()) == ["failed"] * len(commands), f"{r}")
+    cases = xml.parse(folder.out / "report.xml").getroot().iter("testcase")
+    check([c.get("classname") for c in cases] == [f"<07>{i}" for i in range(len(commands))], "names in XML")
+
+
+def regress_same_names():
+    """Images and boards of one file name in two folders are runs of their own, which --resume knows again; that one of
+    the images is none is no difference between engines."""
+    row = '[[row]]\nbench = "smoke"\nfirmware = ["a/x.elf", "b/x.elf"]\nboard = ["a/y.toml", "b/y.toml"]\n'
+    folder = Folder(2 * row)
+    image = pathlib.Path(command.BRICK).with_name("turbo.elf")
+    for name in "ab":
+        (folder.path / name).mkdir()
+        shutil.copy(command.BOARDS / "geobrick-lv-8.toml", folder.path / name / "y.toml")
+    shutil.copy(image, folder.path / "a/x.elf")
+    (folder.path / "b/x.elf").write_text("no program")
+    r = folder.regress("--no-replay")
+    report = folder.report()
+    check([x["verdict"] for x in report["runs"]] == ["passed", "bad"] * 2, f"{r}: {report['runs']}")
+    check([b["verdict"] for b in report["buckets"]] == ["bad"], f"{report['buckets']}")
+    check("4 taken over" in folder.regress("--resume", "--no-replay").stdout, "--resume has forgotten some")
+
+
+globals()[command.CASE]()
