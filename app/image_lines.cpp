@@ -26,13 +26,24 @@ bool read_place(std::string text, std::string& path, unsigned& number) {
   return true;
 }
 
+[[noreturn]] void no_disassembler(const std::string& option) {
+  throw UsageError(
+      fmt::format("{}: {} failed; expected Debian's package binutils-riscv64-unknown-elf", option, kDisassembler));
+}
+
 }  // namespace
+
+void need_disassembler(const std::string& option) {
+  FILE* program = popen(fmt::format("exec {} --version >/dev/null 2>&1", kDisassembler).c_str(), "r");
+  if (program == nullptr || pclose(program) != 0) no_disassembler(option);
+}
 
 void image_lines(const std::string& option, const std::string& image,
                  const std::function<void(std::uint32_t address, const std::string& path, unsigned line)>& take) {
   std::string quoted;
   for (const char c : image) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  FILE* program = popen(fmt::format("exec {} -d -l --no-show-raw-insn '{}'", kDisassembler, quoted).c_str(), "r");
+  FILE* program =
+      popen(fmt::format("exec {} -d -l --no-show-raw-insn '{}' 2>/dev/null", kDisassembler, quoted).c_str(), "r");
   if (program == nullptr) throw UsageError(fmt::format("{}: no process; expected room for one more", option));
   std::string text, path;
   unsigned number = 0;
@@ -50,9 +61,7 @@ void image_lines(const std::string& option, const std::string& image,
     text.clear();
   }
   const int status = pclose(program);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw UsageError(
-        fmt::format("{}: {} failed; expected Debian's package binutils-riscv64-unknown-elf", option, kDisassembler));
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) no_disassembler(option);
 }
 
 }  // namespace brick

@@ -8,6 +8,7 @@
 namespace brick {
 
 // Calls `take` with each instruction of the ELF file, by address. `option` is for messages. Throws UsageError.
+void need_disassembler(const std::string& option);  // throws UsageError when it is not there
 void image_lines(const std::string& option, const std::string& image,
                  const std::function<void(std::uint32_t address, const std::string& path, unsigned line)>& take);
 

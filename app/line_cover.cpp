@@ -51,6 +51,7 @@ RunExtras line_cover(const std::string& file, const RunOptions& options) {
   RunExtras extras;
   if (file.empty()) return extras;
   need_folder("--cover", file);
+  need_disassembler("--cover");
   const std::string image = options.firmware.empty() ? default_firmware() : options.firmware;
   extras.after = [file, image](Simulation& simulation, nlohmann::json& results) {
     write(file, lines_of(image, simulation.machine().cpu().executed()));

@@ -1,6 +1,12 @@
 // The `brick` command: parses the line and calls the command, with the benches from the room of the tests, which no
 // other file of this folder knows. Exit status: 0 passed, 1 failed, 2 bad usage or bad input with one line on stderr
 // (docs/command.md).
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <climits>
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -245,12 +251,28 @@ int main_command(int argc, char** argv) {
   }
 }
 
+// The next file would get the number of a stream that the caller has closed, and with it the lines of the command.
+void replace_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0) open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+// A command whose output got lost has not passed.
+int with_output_written(int status) {
+  const bool written = std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written || status != 0) return status;
+  std::cerr << "brick: stdout took no more; expected room for what the command prints\n";
+  return 1;
+}
+
 }  // namespace
 }  // namespace brick
 
-int sc_main(int argc, char** argv) { return brick::main_command(argc, argv); }
+int sc_main(int argc, char** argv) { return brick::with_output_written(brick::main_command(argc, argv)); }
 
 int main(int argc, char** argv) {
+  brick::replace_closed_streams();
+  std::signal(SIGPIPE, SIG_IGN);                        // a reader that has gone is an error of the write
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);  // stdout and stderr belong to the command
   return sc_core::sc_elab_and_sim(argc, argv);
 }

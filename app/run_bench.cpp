@@ -127,7 +127,9 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
     report.fail("host", e.what());
   } catch (const ScriptFailure& e) { report.fail("set-up is taken", e.what()); } catch (const GdbKilled& e) {
     report.fail("debugger", e.what());
-  } catch (const Interrupted& e) { report.fail("run to its end", e.what()); }
+  } catch (const Interrupted& e) { report.fail("run to its end", e.what()); } catch (const std::exception& e) {
+    report.fail("no error of the run", e.what());  // a file of results, for example
+  }
   for (const std::string& error : simulation.machine().take_run_errors()) {
     report.fail("no error of the machine", error);
     std::cerr << "brick " << extras.command << ": " << error << '\n';
@@ -136,9 +138,12 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
   for (const std::string& violation : timing.failures) report.fail("bus timing", violation);
   for (const auto* list : {&timing.failures, &timing.waived, &timing.unused})
     for (const std::string& line : *list) std::cerr << "brick " << extras.command << ": " << line << '\n';
+  nlohmann::json results = simulation.measures();
+  try {
+    if (extras.after) extras.after(simulation, results);
+  } catch (const std::exception& e) { report.fail("results are written", e.what()); }
   const bool passed = report.passed();
   std::cout << fmt::format("{} {}\n{}\n", passed ? "PASS" : "FAIL", bench.name, simulation.measures_text());
-  nlohmann::json results = simulation.measures();
   results["bench"] = bench.name;
   results["engine"] = options.engine;
   results["board"] = config.board.name;
@@ -148,7 +153,6 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
   results["steps"] = steps_json(report);
   results["covers"] = covers_json(bench, report, simulation.timing());
   if (!options.wave.empty()) results["wave"] = options.wave;
-  if (extras.after) extras.after(simulation, results);
   add_origin(results, config.firmware);
   if (!options.json.empty()) write_json(options.json, results);
   return passed ? 0 : 1;

@@ -184,13 +184,15 @@ void Simulation::run(const std::function<void()>& host) {
   begin_ = last_progress_ = std::chrono::steady_clock::now();
   sc_core::sc_start();  // returns when the thread has ended: nothing else is scheduled
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  close_wave();
-  close_record();
   std::exception_ptr error = thread.error();
-  try {
-    close_profile();
-  } catch (...) {
-    if (!error) error = std::current_exception();
+  for (void (Simulation::*const close)() :
+       {&Simulation::close_wave, &Simulation::close_record, &Simulation::close_profile}) {
+    try {
+      (this->*close)();
+    } catch (const std::exception& e) {  // each is closed, and the first error ends the run
+      if (error) tell(e.what());
+      if (!error) error = std::current_exception();
+    }
   }
   clear_progress();
   if (error) std::rethrow_exception(error);

@@ -1,7 +1,10 @@
 // FST, the compressed format of GTKWave, through the C library that ships with Verilator.
 #include <fstapi.h>
 
+#include <fstream>
 #include <stdexcept>
+
+#include <fmt/format.h>
 
 #include "systemc/core/trace_formats.h"
 #include "systemc/core/trace_queue.h"
@@ -12,16 +15,37 @@ namespace {
 
 constexpr int kPicoseconds = -12;
 
+// The library says nothing about what it could not write. A file is blocks, each a byte of its kind and the length from
+// there on; the names of signals are the last, and the end of the last is the end of the file.
+bool is_whole(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  int kind = 0, last = FST_BL_SKIP;
+  while ((kind = in.get()) != std::ifstream::traits_type::eof()) {
+    unsigned char bytes[8];
+    if (!in.read(reinterpret_cast<char*>(bytes), sizeof bytes)) return false;
+    std::uint64_t length = 0;
+    for (const unsigned char byte : bytes) length = length << 8 | byte;
+    const auto rest = static_cast<std::streamoff>(length - sizeof bytes);
+    if (rest > 0 && !(in.seekg(rest - 1, std::ios::cur) && in.get() != std::ifstream::traits_type::eof())) return false;
+    last = kind;
+  }
+  return last == FST_BL_HIER || last == FST_BL_HIER_LZ4 || last == FST_BL_HIER_LZ4DUO;
+}
+
 class FstWriter : public TraceQueue {
  public:
   FstWriter(const std::string& file, TimeFs from, TimeFs to)
-      : TraceQueue(from, to), context_(fstWriterCreate(file.c_str(), 1)) {
+      : TraceQueue(from, to), name_(file), context_(fstWriterCreate(file.c_str(), 1)) {
     if (!context_) throw std::runtime_error(file + ": cannot write the waveform");
     fstWriterSetTimescale(context_.get(), kPicoseconds);
     fstWriterSetVersion(context_.get(), "brick");
     fstWriterSetPackType(context_.get(), FST_WR_PT_LZ4);
   }
-  ~FstWriter() override { close(); }
+  ~FstWriter() override {
+    try {
+      close();
+    } catch (const std::exception& e) { fmt::print(stderr, "{}\n", e.what()); }
+  }
 
  private:
   void write_header(const TraceScope& top) override {
@@ -63,11 +87,15 @@ class FstWriter : public TraceQueue {
     fstWriterEmitVariableLengthValueChange(context_.get(), handles_[id], text.data(),
                                            static_cast<std::uint32_t>(text.size()));
   }
-  void finish() override { context_.reset(); }
+  void finish() override {
+    context_.reset();
+    if (!is_whole(name_)) throw std::runtime_error(name_ + ": cannot write the waveform: no room for all of it");
+  }
 
   struct Closer {
     void operator()(void* context) const { fstWriterClose(context); }
   };
+  std::string name_;
   std::unique_ptr<void, Closer> context_;
   std::vector<fstHandle> handles_;
 };

@@ -2,7 +2,9 @@
 #include "systemc/core/trace.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -203,6 +205,28 @@ TEST_F(Trace, NumbersWithAFractionAreRealVariables) {
   EXPECT_THAT(fst, ::testing::ContainsRegex("#50\nr7.75 .\n"));
   std::remove(file.c_str());
   std::remove(converted.c_str());
+}
+
+// A file that takes no more than its header: as on a disk that is full, but for this process alone.
+TEST_F(Trace, TellsThatThereWasNoRoom) {
+  for (const std::string ending : {".fst", ".vcd"}) {
+    const std::string file = path(ending);
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    auto writer = TraceWriter::open(file);
+    signals.attach(writer.get());
+    rlimit small = before;
+    small.rlim_cur = 400;
+    setrlimit(RLIMIT_FSIZE, &small);
+    for (unsigned i = 1; i < 1000; ++i) signals.set(addr, i * kPs, i * 7 % 16);
+    writer->flush_until(1000 * kPs);
+    EXPECT_THROW(writer->close(), std::runtime_error) << ending;
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    signals.attach(nullptr);
+    std::remove(file.c_str());
+  }
 }
 
 TEST(TraceOpen, SaysWhatIsWrongWithTheFileName) {

@@ -1,0 +1,66 @@
+"""The built command when what it writes finds no room: streams and files of results.
+
+usage: output_acceptance.py BRICK CASE; each CASE is one test.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+import command
+from command import brick, check
+
+
+def ended(arguments, script="", **streams):
+    """(status, stderr) of a command whose stdin, stdout or stderr is a file, or None: closed."""
+    closed = [n for n, name in enumerate(("stdin", "stdout", "stderr")) if name in streams and streams[name] is None]
+    streams = {name: stream for name, stream in streams.items() if stream}
+    r = subprocess.run([command.BRICK, *arguments], text=True, timeout=60, check=False,
+                       **({"stdin": subprocess.DEVNULL} if "stdin" in streams else {"input": script}),
+                       **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams},
+                       preexec_fn=lambda: [os.close(n) for n in closed])
+    return r.returncode, r.stderr
+
+
+def output_lost():
+    """A reader that goes, a full disk, a closed stream: status 1 and a line that says so, and results as ever."""
+    with tempfile.TemporaryDirectory() as folder, open("/dev/full", "w", encoding="ascii") as full:
+        results = pathlib.Path(folder, "r.json")
+        for arguments in (["list", "--json"], ["boards"], ["run", "smoke", "--engine", "systemc"]):
+            status, said = ended(arguments, stdout=full)
+            check(status == 1 and said == "brick: stdout took no more; expected room for what the command prints\n",
+                  f"{arguments}: {status} {said}")
+        status, _ = ended(["run", "smoke", "--engine", "systemc", "--json", str(results)], stdout=None)
+        check(status == 1 and json.loads(results.read_text())["verdict"] == "PASS", f"stdout closed: {status}")
+        check(ended(["exec", "none"], stderr=None)[0] == 2, "stderr closed")
+        results.unlink()
+        with subprocess.Popen([command.BRICK, "exec", "-", "--json", str(results)], text=True, stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as p:
+            p.stdout.close()
+            p.stdin.write("I16\nI17\n")
+            p.stdin.close()
+            said = p.stderr.read()
+        check(p.returncode == 1 and "cannot be written to stdout" in said, f"reader gone: {p.returncode} {said}")
+        check(len(json.loads(results.read_text())["exchanges"]) == 2, "the results")
+
+
+def results_lost():
+    """A file that cannot be written is a step that failed; the verdict and the others are written."""
+    with tempfile.TemporaryDirectory() as folder:
+        results = pathlib.Path(folder, "r.json")
+        for option, name in (("--wave", "w.vcd"), ("--record", "r.csv"), ("--cover", "c.info")):
+            file = pathlib.Path(folder, name)
+            file.symlink_to("/dev/full")
+            r = brick("run", "smoke", "--engine", "systemc", option, str(file), "--json", str(results))
+            check(r.returncode == 1 and "FAIL smoke" in r.stdout, f"{option}: {r}")
+            made = json.loads(results.read_text())
+            results.unlink()
+            check(made["verdict"] == "FAIL" and name in made["steps"][-1]["detail"], f"{option}: {made['steps'][-1]}")
+        r = subprocess.run([command.BRICK, "run", "smoke", "--cover", f"{folder}/c"], capture_output=True, text=True,
+                           env={**os.environ, "PATH": folder}, timeout=60, check=False)
+        check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"no disassembler: {r}")
+
+
+globals()[command.CASE]()
