@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -104,13 +105,13 @@ class NewFile {
 
 }  // namespace
 
-void FlashFile::load(std::uint8_t* data, std::size_t bytes) const {
+void FlashFile::load(std::uint8_t* data, std::size_t bytes) {
   if (file_.empty()) return;
   remove_what_is_left(file_);
   std::error_code error;
   const bool exists = std::filesystem::exists(file_, error);
   if (error) fail(file_, "cannot be read: " + error.message());
-  if (!exists) return save(data, bytes);  // tells now, not at the end, that it cannot be written
+  if (!exists) return write(data, bytes);  // tells now, not at the end, that it cannot be written
   if (!std::filesystem::is_regular_file(file_)) fail(file_, "is not a file");
   const auto size = std::filesystem::file_size(file_, error);
   if (error) fail(file_, "cannot be read: " + error.message());
@@ -120,13 +121,20 @@ void FlashFile::load(std::uint8_t* data, std::size_t bytes) const {
     fail(file_, std::string("cannot be read: ") + std::strerror(errno));
   if (!std::ofstream(file_, std::ios::binary | std::ios::app)) fail_to_write(file_);
   const NewFile probe(file_);
+  known_.assign(data, data + bytes);
 }
 
-void FlashFile::save(const std::uint8_t* data, std::size_t bytes) const {
-  if (file_.empty()) return;
+void FlashFile::save(const std::uint8_t* data, std::size_t bytes) {
+  std::error_code ignored;
+  const bool same = known_.size() == bytes && std::equal(known_.begin(), known_.end(), data);
+  if (!file_.empty() && !(same && std::filesystem::exists(file_, ignored))) write(data, bytes);
+}
+
+void FlashFile::write(const std::uint8_t* data, std::size_t bytes) {
   NewFile file(file_);
   file.write(data, bytes);
   file.take_its_place();
+  known_.assign(data, data + bytes);
 }
 
 }  // namespace brick

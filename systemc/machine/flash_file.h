@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace brick {
 
@@ -14,11 +16,15 @@ class FlashFile {
 
   // Each throws std::runtime_error with one clear line, load() also when the file could not be written later. A file
   // that is not there is made from `data`.
-  void load(std::uint8_t* data, std::size_t bytes) const;
-  void save(const std::uint8_t* data, std::size_t bytes) const;
+  void load(std::uint8_t* data, std::size_t bytes);
+  // Writes only what differs from what was loaded or written last: what another process has written since stays.
+  void save(const std::uint8_t* data, std::size_t bytes);
 
  private:
+  void write(const std::uint8_t* data, std::size_t bytes);
+
   std::string file_;
+  std::vector<std::uint8_t> known_;
 };
 
 }  // namespace brick

@@ -35,7 +35,7 @@ void MachineMemory::set_main_wait(Cycle wait) {
   for (const Part& part : main_) cpu_.set_wait(part.base, wait);
 }
 
-void MachineMemory::save_flash() const { flash_file_.save(cpu_.memory(kFlash, kFlashBytes), kFlashBytes); }
+void MachineMemory::save_flash() { flash_file_.save(cpu_.memory(kFlash, kFlashBytes), kFlashBytes); }
 
 void MachineMemory::set_strap(Strap strap, std::uint32_t value) {
   std::memcpy(cpu_.memory(kStraps, kStrapsBytes) + 4 * static_cast<std::uint32_t>(strap), &value, sizeof value);

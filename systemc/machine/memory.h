@@ -31,7 +31,7 @@ class MachineMemory {
   void set_strap(Strap strap, std::uint32_t value);
 
   void randomize(std::uint64_t seed);  // RAM content after power-on
-  void save_flash() const;             // to the file, if there is one; throws std::runtime_error
+  void save_flash();                   // to the file, if there is one; throws std::runtime_error
   // Called when a SAVE is complete: its last write says that the image before it is outdated (docs/save.md).
   std::function<void()> on_saved;
 

@@ -7,8 +7,10 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -27,6 +29,10 @@ class FlashFiles : public ::testing::Test {
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   void write(const std::string& name) const { std::ofstream(path(name)) << "begun"; }
+  std::vector<std::uint8_t> content(const std::string& name) const {
+    std::ifstream in(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
   std::set<std::string> names() const {
     std::set<std::string> all;
     for (const auto& entry : fs::directory_iterator(folder_)) all.insert(entry.path().filename().string());
@@ -68,6 +74,26 @@ TEST_F(FlashFiles, WhatIsNotOursOrStillWrittenStays) {
   EXPECT_EQ(names(), kept);
   open("a.bin");
   EXPECT_EQ(names(), kept);
+}
+
+// The last SAVE stands there: a process that has nothing new writes nothing.
+TEST_F(FlashFiles, WhatAnotherProcessHasSavedSinceStays) {
+  std::array<std::uint8_t, 4> first{1, 2, 3, 4}, second{};
+  FlashFile one(path("a.bin")), other(path("a.bin"));
+  one.load(first.data(), first.size());
+  other.load(second.data(), second.size());
+  EXPECT_EQ(second, first);
+  first[0] = 9;
+  one.save(first.data(), first.size());
+  other.save(second.data(), second.size());
+  EXPECT_EQ(content("a.bin"), (std::vector<std::uint8_t>{9, 2, 3, 4}));
+  second[3] = 7;
+  other.save(second.data(), second.size());
+  one.save(first.data(), first.size());
+  EXPECT_EQ(content("a.bin"), (std::vector<std::uint8_t>{1, 2, 3, 7}));
+  fs::remove(path("a.bin"));
+  other.save(second.data(), second.size());
+  EXPECT_EQ(content("a.bin"), (std::vector<std::uint8_t>{1, 2, 3, 7})) << "made again";
 }
 
 // What is left stands beside the file that a link names, not beside the link.
