@@ -2,12 +2,20 @@
 // path of two columns coloured by its speed. gnuplot reads the file and draws; this writes what it is told
 // (docs/record.md).
 #include <fnmatch.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
-#include <csignal>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,7 +50,61 @@ std::vector<std::string> fields(const std::string& line) {
   return list;
 }
 
-std::vector<std::string> columns_of(const std::string& file) {
+// Of the picture, in ms.
+struct Window {
+  std::optional<double> from, to;
+  bool has(double ms) const { return !(from && ms < *from) && !(to && ms > *to); }
+};
+
+Window window_of(const PlotOptions& o) {
+  const auto bound = [](const char* option, const std::string& text) -> std::optional<double> {
+    if (text.empty()) return std::nullopt;
+    try {
+      return static_cast<double>(parse_time(text)) * 1e-12;
+    } catch (const UsageError& e) { throw UsageError(fmt::format("{}: {}", option, e.what())); }
+  };
+  const Window window{bound("--from", o.from), bound("--to", o.to)};
+  if (window.from && window.to && *window.from >= *window.to)
+    throw UsageError(fmt::format("--from {}: is not before --to {}; expected the earlier time first", o.from, o.to));
+  return window;
+}
+
+// The first of the numbers of a row, nothing where it has others than `count` of them.
+std::optional<double> time_of(const std::string& row, std::size_t count) {
+  const char* at = row.c_str();
+  double time = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    char* end = nullptr;
+    const double value = std::strtod(at, &end);
+    if (end == at || *end != (i + 1 < count ? ',' : '\0')) return std::nullopt;
+    if (i == 0) time = value;
+    at = end + 1;
+  }
+  return time;
+}
+
+// gnuplot draws what it can of a file and is silent about the rest.
+void check_rows(std::ifstream& in, const std::string& file, std::size_t columns, const Window& window) {
+  std::optional<double> first;
+  double last = 0;
+  std::size_t number = 1, drawn = 0;
+  for (std::string row; ++number, std::getline(in, row);) {
+    if (!row.empty() && row.back() == '\r') row.pop_back();
+    const std::optional<double> time = time_of(row, columns);
+    if (!time)
+      throw UsageError(fmt::format("{}:{}: {}; expected {} numbers, as in its first line", file, number,
+                                   beginning_of(row), columns));
+    if (!first) first = time;
+    last = *time;
+    drawn += window.has(*time) ? 1u : 0u;
+  }
+  if (!first) throw UsageError(fmt::format("{}: has no row; expected a run with servo interrupts", file));
+  if (drawn < 2)
+    throw UsageError(fmt::format("{}: has {} rows to draw, of {} from {} to {} ms; expected two or more", file, drawn,
+                                 number - 2, *first, last));
+}
+
+std::vector<std::string> columns_of(const std::string& file, const Window& window) {
   std::ifstream in(file);
   std::string line;
   std::error_code ignored;
@@ -53,15 +115,23 @@ std::vector<std::string> columns_of(const std::string& file) {
   if (names[0] != "time_ms" || names.size() < 2)
     throw UsageError(fmt::format("{}: begins with `{}`; expected a record, whose first line begins with time_ms", file,
                                  beginning_of(names[0])));
-  if (in.peek() == std::ifstream::traits_type::eof())
-    throw UsageError(fmt::format("{}: has no row; expected a run with servo interrupts", file));
+  check_rows(in, file, names.size(), window);
   return names;
 }
 
+// What stands behind the end of a line would be a command of its own.
 std::string quoted(const std::string& text) {
+  if (text.find('\n') != std::string::npos)
+    throw UsageError(fmt::format("{}: has an end of a line; expected a name or text of one line", beginning_of(text)));
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? "''" : std::string(1, c);
   return result + "'";
+}
+
+// To gnuplot <NAME and |NAME are programs, and - is its input.
+std::string quoted_file(const std::string& name) {
+  const bool plain = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '/' || name[0] == '.';
+  return quoted(plain ? name : "./" + name);
 }
 
 struct Column {
@@ -122,21 +192,16 @@ std::vector<Limit> limits_of(const std::vector<std::string>& texts) {
     try {
       if (equals != std::string::npos) value = std::stod(text.substr(equals + 1), &used);
     } catch (const std::exception&) {}
-    if (equals == std::string::npos || equals == 0 || used == 0 || equals + 1 + used != text.size())
+    if (equals == std::string::npos || equals == 0 || used == 0 || equals + 1 + used != text.size() ||
+        !std::isfinite(value))
       throw UsageError(fmt::format("--limit {}: is no limit; expected one like velocity=32", beginning_of(text)));
     limits.push_back({text.substr(0, equals), value});
   }
   return limits;
 }
 
-std::string range(const PlotOptions& o) {
-  const auto bound = [](const char* option, const std::string& text) {
-    if (text.empty()) return std::string("*");
-    try {
-      return fmt::format("{}", static_cast<double>(parse_time(text)) * 1e-12);
-    } catch (const UsageError& e) { throw UsageError(fmt::format("{}: {}", option, e.what())); }
-  };
-  return fmt::format("[{}:{}]", bound("--from", o.from), bound("--to", o.to));
+std::string bound(const std::optional<double>& ms, const char* otherwise) {
+  return ms ? fmt::format("{}", *ms) : otherwise;
 }
 
 std::string terminal(const PlotOptions& o, int height) {
@@ -155,7 +220,7 @@ struct Source {
   const char* style;
 };
 
-std::string series_script(const PlotOptions& o, const std::vector<Source>& sources) {
+std::string series_script(const PlotOptions& o, const Window& window, const std::vector<Source>& sources) {
   std::vector<std::string> kinds;
   for (const Source& s : sources)
     for (const Column& column : s.columns)
@@ -172,10 +237,11 @@ std::string series_script(const PlotOptions& o, const std::vector<Source>& sourc
       legend = std::max(legend, s.prefix.size() + column.name.size() + kLegendLine);
   std::string script = terminal(o, kPanelHeight * static_cast<int>(kinds.size()) + kMargin);
   script += fmt::format(
-      "\nset output {}\nset datafile separator ','\nset xrange {}\nset grid lc rgb '#dddddd'\nset key outside right "
+      "\nset output {}\nset datafile separator ','\nset xrange [{}:{}]\nset grid lc rgb '#dddddd'\nset key outside "
+      "right "
       "top\n"
       "set lmargin 12\nset rmargin {}\nset multiplot layout {},1 title {}\n",
-      quoted(o.output), range(o), legend, kinds.size(), quoted(o.title));
+      quoted_file(o.output), bound(window.from, "*"), bound(window.to, "*"), legend, kinds.size(), quoted(o.title));
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     std::vector<std::string> curves;
     int colour = 0;
@@ -183,7 +249,7 @@ std::string series_script(const PlotOptions& o, const std::vector<Source>& sourc
       colour = 0;
       for (const Column& column : s.columns)
         if (kind_of(column.name) == kinds[i])
-          curves.push_back(fmt::format("{} using 1:{} with lines lw 1.5 lc {} {} title {}", quoted(s.file),
+          curves.push_back(fmt::format("{} using 1:{} with lines lw 1.5 lc {} {} title {}", quoted_file(s.file),
                                        of_column(column), ++colour, s.style, quoted(s.prefix + column.name)));
     }
     for (const Limit& l : limits)
@@ -198,40 +264,68 @@ std::string series_script(const PlotOptions& o, const std::vector<Source>& sourc
 }
 
 // Colour: the way between two rows by their time. Rows outside --from and --to are left out.
-std::string path_script(const PlotOptions& o, const std::vector<Source>& sources) {
+std::string path_script(const PlotOptions& o, const Window& window, const std::vector<Source>& sources) {
   std::string script =
       terminal(o, kPathSize) + fmt::format(
                                    "\nset output {}\nset datafile separator ','\nset grid lc rgb '#dddddd'\n"
                                    "set size ratio -1\nset offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\nset "
                                    "key off\nset title {}\nset cblabel 'speed, per ms'\n"
                                    "set palette defined (0 '#440154', 1 '#31688e', 2 '#35b779', 3 '#fde725')\n",
-                                   quoted(o.output), quoted(o.title));
-  const std::string window = range(o);
-  const std::size_t colon = window.find(':');
-  const std::string from = window.substr(1, colon - 1), to = window.substr(colon + 1, window.size() - colon - 2);
+                                   quoted_file(o.output), quoted(o.title));
   script += "pt = NaN\n";
   script += "speed(t,x,y) = (v = sqrt((x-px)**2 + (y-py)**2) / (t-pt), pt = t, px = x, py = y, v)\n";
-  script += fmt::format("seen(t,x) = (t >= {} && t <= {}) ? x : NaN\n", from == "*" ? "-1e99" : from,
-                        to == "*" ? "1e99" : to);
+  script += fmt::format("seen(t,x) = (t >= {} && t <= {}) ? x : NaN\n", bound(window.from, "-1e99"),
+                        bound(window.to, "1e99"));
   std::vector<std::string> curves;
   for (const Source& s : sources)
     curves.push_back(fmt::format("{0} using (seen($1,{1})):({2}):(speed($1,{1},{2})) with lines lw 2.5 lc palette",
-                                 quoted(s.file), of_column(s.columns[0]), of_column(s.columns[1])));
+                                 quoted_file(s.file), of_column(s.columns[0]), of_column(s.columns[1])));
   script += fmt::format("px = 0; py = 0\nset xlabel {}\nset ylabel {}\nplot {}\n", quoted(sources[0].columns[0].name),
                         quoted(sources[0].columns[1].name), fmt::join(curves, ", "));
   return script;
 }
 
-void draw(const std::string& script) {
-  std::signal(SIGPIPE, SIG_IGN);  // a gnuplot that is not there is told by its status
-  FILE* gnuplot = popen("exec gnuplot -d", "w");
+// Its end is there: gnuplot passes when there is no room for all of it.
+bool is_whole(const std::string& picture) {
+  constexpr std::streamoff kEnd = 64;
+  std::ifstream in(picture, std::ios::binary | std::ios::ate);
+  in.seekg(std::max<std::streamoff>(0, in.tellg() - kEnd));
+  const std::string end{std::istreambuf_iterator<char>(in), {}};
+  return end.find("</svg>") != std::string::npos || end.find("IEND") != std::string::npos;
+}
+
+void run_gnuplot(const std::string& script) {
+  const int file = memfd_create("script", 0);
+  if (file < 0 || write(file, script.data(), script.size()) != static_cast<ssize_t>(script.size()))
+    throw UsageError("gnuplot cannot be started; expected room for what it is told");
+  FILE* gnuplot = popen(fmt::format("exec gnuplot -d /dev/fd/{} 2>&1", file).c_str(), "r");
   if (gnuplot == nullptr) throw UsageError("gnuplot cannot be started; expected room for one more process");
-  const bool written = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
+  std::string said, line;
+  for (int c = 0; (c = std::fgetc(gnuplot)) != EOF;) {
+    if (c != '\n') line += static_cast<char>(c);
+    if (c == '\n' && !line.empty()) said = std::exchange(line, "");
+  }
   const int status = pclose(gnuplot);
+  close(file);
   if (status == -1 || !WIFEXITED(status) || WEXITSTATUS(status) == 127)
     throw UsageError("gnuplot is not installed; expected Debian's package gnuplot-nox");
-  if (!written || WEXITSTATUS(status) != 0)
-    throw UsageError("gnuplot could not draw this, see above; expected a record and a writable picture");
+  if (WEXITSTATUS(status) != 0)
+    throw UsageError(fmt::format("gnuplot: {}; expected a record and a writable picture", cut_text(said, 200)));
+}
+
+// Beside the picture, which stays as it was when there is no new one.
+void draw(const std::string& script, const std::string& unfinished, const std::string& picture) {
+  std::error_code failed;
+  try {
+    run_gnuplot(script);
+    if (!is_whole(unfinished))
+      throw UsageError(fmt::format("--output {}: cannot be written; expected room for a picture", picture));
+    fs::rename(unfinished, picture, failed);
+    if (failed) throw UsageError(fmt::format("--output {}: {}; expected a file", picture, failed.message()));
+  } catch (...) {
+    fs::remove(unfinished, failed);
+    throw;
+  }
 }
 
 }  // namespace
@@ -241,18 +335,22 @@ int plot_command(const PlotOptions& given) {
   if (o.output.empty()) o.output = fs::path(o.file).replace_extension(".svg");
   need_folder("--output", o.output);
   if (o.title.empty()) o.title = fs::path(o.file).stem();
+  const Window window = window_of(o);
   std::vector<Source> sources;
   for (const std::string& file : o.beside.empty() ? std::vector{o.file} : std::vector{o.file, o.beside}) {
     const std::string prefix = o.beside.empty() ? "" : fs::path(file).stem().string() + " ";
-    sources.push_back({file, prefix, chosen(columns_of(file), file, o.path.empty() ? o.columns : o.path),
+    sources.push_back({file, prefix, chosen(columns_of(file, window), file, o.path.empty() ? o.columns : o.path),
                        sources.empty() ? "" : "dt 3"});
   }
   for (const Source& s : sources)
     if (!o.path.empty() && s.columns.size() != 2)
       throw UsageError(fmt::format("--xy {}: are {} columns; expected two", beginning_of(o.path), s.columns.size()));
-  const std::string script = o.path.empty() ? series_script(o, sources) : path_script(o, sources);
-  if (!o.script) draw(script);
-  fmt::print("{}\n", o.script ? script : o.output);
+  terminal(o, 0);  // or it throws
+  const fs::path picture = o.output;
+  if (!o.script) o.output = fs::path(picture).replace_extension(".new" + picture.extension().string());
+  const std::string script = o.path.empty() ? series_script(o, window, sources) : path_script(o, window, sources);
+  if (!o.script) draw(script, o.output, picture.string());
+  std::cout << (o.script ? script : picture.string()) << '\n';
   return 0;
 }
 

@@ -5,6 +5,8 @@ usage: record_acceptance.py BRICK CASE; each CASE is one test.
 
 import csv
 import pathlib
+import resource
+import subprocess
 import tempfile
 
 import command
@@ -129,6 +131,32 @@ def record_mistakes():
             check(r.returncode == 2 and text in r.stderr and r.stderr.count("\n") == 1, f"{options}: {r.stderr}")
 
 
+def odd_pictures(folder, file):
+    """No name is a program to gnuplot; an old picture stays when there is no new one."""
+    place = pathlib.Path(folder, "odd")
+    place.mkdir()
+    rows = file.read_text().splitlines(keepends=True)
+
+    def plotted(name, picture, lines=rows, **limits):
+        (place / name).write_text("".join(lines))
+        return subprocess.run([pathlib.Path(command.BRICK).resolve(), "plot", "-o", picture, "--", name], cwd=place,
+                              capture_output=True, text=True, timeout=60, check=False, **limits)
+
+    for name, picture in (("<id >WHO; cat #.csv", "|touch WHO #.svg"), ("-", "-.svg"), ("it's.csv", "a.svg")):
+        r = plotted(name, picture)
+        check(r.returncode == 0 and "</svg>" in (place / picture).read_text(), f"{name}: {r}")
+    check(not (place / "WHO").exists(), "a name was run as a command")
+    old = (place / "a.svg").read_bytes()
+    for lines, text in ((rows[:9] + [rows[9][:-9]], "r.csv:10: "), ([*rows[:9], "1,x\n"], "r.csv:10: `1,x`"),
+                        ([*rows[:9], rows[9].replace("\n", ",0\n")], "r.csv:10: ")):
+        r = plotted("r.csv", "a.svg", lines)
+        check(r.returncode == 2 and text in r.stderr and "as in its first line" in r.stderr, f"{text}: {r}")
+    r = plotted("r.csv", "a.svg", restore_signals=False,  # SIGXFSZ stays ignored: the file takes no more
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (len(old) - 100, len(old) - 100)))
+    check(r.returncode == 2 and r.stderr.count("\n") == 1, f"no room: {r}")
+    check((place / "a.svg").read_bytes() == old and not list(place.glob("*.new.*")), "the old picture")
+
+
 def plot():
     """The pictures hold what was asked for, where it belongs."""
     with tempfile.TemporaryDirectory() as folder:
@@ -153,7 +181,12 @@ def plot():
         png = pathlib.Path(folder, "path.png")
         r = brick("plot", str(file), "--xy", "motor1.commanded motor1.error", "-o", str(png), "--from", "50ms")
         check(r.returncode == 0 and png.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n", r.stderr)
+        odd_pictures(folder, file)
         for options, wanted in (((str(file), "-o", "a.pdf"), "unknown kind of picture"),
+                                ((str(file), "--from", "10s"), "has 0 rows to draw"),
+                                ((str(file), "--from", "20ms", "--to", "10ms"), "expected the earlier time first"),
+                                ((str(file), "--limit", "velocity=nan"), "is no limit"),
+                                ((str(file), "--title", "a\n!touch b"), "has an end of a line"),
                                 ((str(file), "--of", "motor3.error"), "no column `motor3.error`"),
                                 ((str(file), "--limit", "speed=3"), "nothing of that kind is drawn"),
                                 ((str(file), "--limit", "velocity"), "is no limit"),
