@@ -33,6 +33,7 @@ namespace {
 constexpr const char* kAbout =
     "brick: a virtual Turbo PMAC2 / Geo Brick LV, as RTL and as SystemC model, with its firmware";
 constexpr const char* kDefaultInstructions = "10000000000";
+constexpr double kMostMinutes = 60 * 24 * 365;
 
 unsigned job_count(const std::string& text) {
   constexpr std::uint64_t kMostJobs = 1024;
@@ -41,10 +42,29 @@ unsigned job_count(const std::string& text) {
   return static_cast<unsigned>(jobs);
 }
 
+// CLI::Range lets what is no number pass.
+CLI::Validator within(double least, double most) {
+  return CLI::Validator(
+      [least, most](const std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        const bool good = end != text.c_str() && *end == '\0' && value >= least && value <= most;
+        return good ? std::string() : fmt::format("{} is not a number from {:.10g} to {:.10g}", text, least, most);
+      },
+      "");
+}
+
 void add_end_with(CLI::App& command, int& parent) {
   command.add_option("--end-with", parent, "ends when process PID, which has started it, has ended")
       ->type_name("PID")
-      ->check(CLI::PositiveNumber);
+      ->check(within(1, INT_MAX));
+}
+
+// An empty text is a mistake, of a variable that is not set for example, and no option left out.
+void refuse_empty(CLI::App& command) {
+  for (CLI::Option* option : command.get_options([](const CLI::Option* o) { return o->get_items_expected_max() > 0; }))
+    option->check(
+        CLI::Validator([](const std::string& text) { return std::string(text.empty() ? "is empty" : ""); }, ""));
 }
 
 struct Commands {
@@ -194,11 +214,11 @@ struct Commands {
         regress->add_flag("--slurm", regress_options.slurm, "job arrays of a Slurm cluster, --jobs tasks at once");
     regress->add_option("--task-seconds", regress_options.task_seconds, "how long a task of the cluster should take")
         ->capture_default_str()
-        ->check(CLI::Range(1.0, 86400.0))
+        ->check(within(1, 86400))
         ->needs(slurm);
     regress->add_flag("--task", regress_options.task, "PLAN is the file of a task of --slurm")->group("");
     regress->add_option("--minutes", regress_options.minutes, "begins no run after so many minutes")
-        ->check(CLI::NonNegativeNumber);
+        ->check(within(0, kMostMinutes));
     regress->callback([this] {
       chosen = [this] {
         if (!jobs.empty()) regress_options.jobs = job_count(jobs);
@@ -218,6 +238,8 @@ struct Commands {
         ->capture_default_str();
     cpu->callback(
         [this] { chosen = [this] { return cpu_command(elf, parse_count("--max-instructions", max_instructions)); }; });
+
+    for (CLI::App* command : app.get_subcommands(nullptr)) refuse_empty(*command);
   }
 };
 

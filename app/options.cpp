@@ -77,7 +77,6 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
   command.add_option("--json", o.json, "write the results to FILE");
   command.add_option("--gdb", o.gdb, "wait for a debugger on 127.0.0.1:PORT, 0 = a free port (docs/debugging.md)")
       ->type_name("PORT");
-  // An empty text is a mistake, not an option left out.
   command
       .add_option_function<std::string>(
           "--waive", [&o](const std::string& file) { o.waive = file; },
@@ -120,7 +119,7 @@ std::uint64_t parse_count(const std::string& option, const std::string& text) {
   std::size_t used = 0;
   try {
     const std::uint64_t value = std::stoull(text, &used);
-    if (used == text.size() && text[0] != '-' && text[0] != '+') return value;
+    if (used == text.size() && text[0] >= '0' && text[0] <= '9') return value;
   } catch (const std::exception&) {}
   throw UsageError(fmt::format("{} {}: is no number; expected an integer of 0 or more", option, text));
 }

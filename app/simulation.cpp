@@ -198,6 +198,12 @@ void Simulation::run(const std::function<void()>& host) {
   if (error) std::rethrow_exception(error);
 }
 
+void Simulation::end_with(int parent) {
+  if (parent != 0 && parent != getppid())
+    throw UsageError(fmt::format("--end-with {}: has not started this process; expected {}", parent, getppid()));
+  parent_ = parent;
+}
+
 bool Simulation::go_on() {
   if (asked_to_stop != SIGINT) return false;
   asked_to_stop = 0;

@@ -61,8 +61,9 @@ class Simulation {
   void open_record(const std::string& file, const std::string& of);  // "" = the usual columns
   void close_record();
 
-  // The run ends as with SIGTERM when this process is no child of process `parent` any more.
-  void end_with(int parent) { parent_ = parent; }
+  // The run ends as with SIGTERM when this process is no child of process `parent` any more. Throws UsageError when it
+  // is none now; 0: there is none.
+  void end_with(int parent);
 
   bool go_on();  // after Interrupted: true when a key asked to stop (SIGINT), which may be asked again
 

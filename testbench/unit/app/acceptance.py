@@ -436,6 +436,14 @@ def bad_input():
             (["exec", "-", "--engine", "verilog"], "", "verilog"),
             (["exec", "-", "--frob"], "", "--frob"),
             (["exec", "-", "--seed", "x"], "", "--seed"),
+            (["exec", "-", "--seed", " -5"], "", "--seed  -5"),
+            *((["exec", "-", option, ""], "", f"{option}: is empty") for option in
+              ("--flash", "--json", "--wave", "--wave-from", "--record", "--record-of", "--profile", "--gdb", "--load",
+               "--firmware", "--bcr", "--waive")),
+            *((["regress", f"{folder}/none.toml", "--minutes", text], "", f"--minutes: {text} is not a number")
+              for text in ("-1", "nan", "inf")),
+            (["serve", "--end-with", "0"], "", "--end-with: 0 is not a number from 1 to"),
+            (["serve", "--end-with", "1", "--listen", "127.0.0.1:0"], "", "--end-with 1: has not started this"),
             (["exec", "-", "--batch", "-1"], "", "--batch"),
             (["exec", "-", "--aperture", "1.1"], "", "--aperture 1.1"),
             (["run", "smoke", "--aperture", "-1"], "", "--aperture -1"),
