@@ -136,7 +136,7 @@ bool Reader::next_line(std::istream& in, std::string& text) {
 std::string_view Reader::behind_comments(File& file, std::string_view text) const {
   for (;;) {
     if (file.comment == 0) {
-      text = trimmed(text);
+      text.remove_prefix(std::min(text.find_first_not_of(kSpaces), text.size()));
       if (text.substr(0, 2) != "/*") return text;
       file.comment = file.line;
       text.remove_prefix(2);

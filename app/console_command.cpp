@@ -99,11 +99,13 @@ class Console {
   void listen();  // to lines from a pipe
   void leave();   // the terminal is as it was, the lines typed are kept
   const ScriptPlayer& player() const { return player_; }
+  std::string failure() const;  // of lines from a pipe, whose sender may not read what is told; else ""
 
  private:
   bool play(const std::string& line);  // false: it ends the session
   bool next_line(std::string& line);   // of the pipe; false: there is none
   void tell(const std::string& text);
+  void fail(const std::string& text);
   void explain();
   void paint();
   std::chrono::milliseconds wait();  // lets time pass; for how long there is nothing to do then
@@ -115,6 +117,8 @@ class Console {
   std::string came_;           // through the pipe
   std::unique_ptr<Terminal> terminal_;
   std::size_t explained_ = 0;  // exchanges
+  std::size_t failed_ = 0;     // lines of the pipe
+  std::string first_failure_;
 };
 
 void Console::leave() {
@@ -130,6 +134,15 @@ void Console::tell(const std::string& text) {
   simulation_.tell(text);
 }
 
+void Console::fail(const std::string& text) {
+  tell(text);
+  if (!terminal_ && failed_++ == 0) first_failure_ = text;
+}
+
+std::string Console::failure() const {
+  return failed_ == 0 ? "" : fmt::format("{} of the lines failed, the first: {}", failed_, first_failure_);
+}
+
 void Console::explain() {
   const auto& exchanges = player_.exchanges();
   for (; explained_ < exchanges.size(); ++explained_) {
@@ -140,14 +153,14 @@ void Console::explain() {
 }
 
 bool Console::play(const std::string& line) {
-  if (line == kQuit) return false;
+  if (line.substr(0, line.find_last_not_of(" \t\r") + 1) == kQuit) return false;
   try {
     std::istringstream in(line);
     const auto script = read_script(in, kFile);
     player_.check(script);
     player_.play(script);
-  } catch (const UsageError& e) { tell(e.what()); } catch (const ScriptFailure& e) {
-    tell(e.what());
+  } catch (const UsageError& e) { fail(e.what()); } catch (const ScriptFailure& e) {
+    fail(e.what());
   } catch (const Interrupted& e) {
     if (!terminal_ || !simulation_.go_on()) throw;
     tell(e.what());
@@ -244,6 +257,7 @@ int console_command(const RunOptions& options, const std::string& history) {
         console.listen();
     });
   } catch (const std::exception& e) { failure = e.what(); }
+  if (failure.empty()) failure = console.failure();
   console.leave();
   const auto tell = [&simulation](const std::string& text) { simulation.tell("brick console: " + text); };
   return end_session(simulation, console.player(), options, config, failure, tell);

@@ -255,6 +255,7 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
       restart(line);
       break;
     case Kind::kExpect: {
+      if (exchanges_.empty()) fail(line, "nothing has been answered yet; expected a line before it that is");
       const std::string actual = fmt::format("{}", fmt::join(last_, "|"));
       if (actual != line.value) fail(line, difference(actual, line.value));
       break;

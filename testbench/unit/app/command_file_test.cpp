@@ -75,8 +75,8 @@ TEST(CommandFile, ChoosesByConditions) {
 
 TEST(CommandFile, ExpectedTextsStayAsTheyAre) {
   EXPECT_THAT(
-      lines("#define P1 P2\nP1\n@expect P1;1 // 2\n@expect\n@wait P1 ; so long\n/*\n@expect 1\n*/\n@expected P1"),
-      ElementsAre("job.pmc:2 P2", "job.pmc:3 @expect P1;1 // 2", "job.pmc:4 @expect", "job.pmc:5 @wait P2",
+      lines("#define P1 P2\nP1\n  @expect P1;1 // 2 \r\n@expect\n@wait P1 ; so long\n/*\n@expect 1\n*/\n@expected P1"),
+      ElementsAre("job.pmc:2 P2", "job.pmc:3 @expect P1;1 // 2 ", "job.pmc:4 @expect", "job.pmc:5 @wait P2",
                   "job.pmc:9 @expected P2"));
 }
 

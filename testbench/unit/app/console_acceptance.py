@@ -90,15 +90,20 @@ def piped():
         lines = ["I16", "P1..2", "UUU", "^P", "@signal clock.source", "@signal nothing", "@wait 1us", "@expect 5",
                  "I17", "@quit", "I18"]
         r = brick("console", "--json", str(results), script="\n".join(lines) + "\n")
-        check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
+        check(r.returncode == 1, f"exit {r.returncode}: {r.stderr}")
         check(r.stdout.split("\n") == ["5", "0", "0", "ERR003", " ".join("0" * 8), "clock.source=7007", "10", ""],
               r.stdout)
         told = r.stderr.splitlines()
-        check(len(told) == 3 and told[0].startswith("  UUU: unknown command"), r.stderr)
+        check(len(told) == 4 and told[0].startswith("  UUU: unknown command"), r.stderr)
         check(told[1].startswith("console:1: @signal: no signal `nothing`") and "expected `5`" in told[2], r.stderr)
-        exchanges = json.loads(results.read_text())["exchanges"]
+        check(told[3].startswith("brick console: 2 of the lines failed, the first: console:1: @signal"), told[3])
+        made = json.loads(results.read_text())
+        check(not made["passed"] and "2 of the lines failed" in made["failure"], str(made))
+        exchanges = made["exchanges"]
         check([e["line"] for e in exchanges] == ["I16", "P1..2", "UUU", "^P", "@signal clock.source", "I17"],
               str(exchanges))
+    r = brick("console", script="I16\r\nUUU\r\n@expect ERR003\r\n@quit \r\nI17\r\n")
+    check(r.returncode == 0 and r.stdout.split() == ["5", "ERR003"], f"CR LF; an error is an answer: {r}")
     r = brick("console", "--board", "nothing", script="")
     check(r.returncode == 2 and r.stderr.count("\n") == 1, r.stderr)
     r = brick("console", "--history", "/nowhere/at/all", script="")

@@ -29,6 +29,11 @@ def at_lines():
     check(re.fullmatch(r"IST=[0-9A-F]{2} SIG=[0-9A-F]{2} MSK=12 ELR=10", out[1]), out[1])
     check(out[2:5] == ["1234 ABCD", "clock.source=7007", "clock.servo=1"], str(out))
     check(re.fullmatch(r"time=\d+ ns", out[-2]), out[-2])
+    for lines, text in ((["P1", "@expect 0 "], "got `0`, expected `0 `"),
+                        (["@wait 1us", "@expect"], "nothing has been answered yet")):
+        r = play(lines)
+        check(r.returncode == 1 and text in r.stderr, f"{lines}: {r.stderr}")
+    check(play(["P1=1", "@expect", 'P1=2SENDP"A "', "@wait 1ms", "@signal clock.source"]).returncode == 0, "nothing")
 
 
 def restarts():
