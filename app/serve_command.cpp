@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/build_info.h"
 #include "app/byte_text.h"
 #include "app/commands.h"
 #include "app/ethernet_server.h"
@@ -45,16 +46,19 @@ class AddressFile {
     return address;
   }
 
-  void write(const std::string& address) const {
-    if (name_.empty()) return;
+  // Whether it is kept; else the old one stays.
+  bool write(const std::string& address) const {
+    if (name_.empty()) return true;
     const auto byte = [&](std::size_t n) { return static_cast<unsigned>(static_cast<unsigned char>(address[n])); };
     const std::string other = name_ + ".new";
     std::ofstream out(other);
     out << fmt::format("{}.{}.{}.{}\n", byte(0), byte(1), byte(2), byte(3));
     out.close();
-    std::error_code ignored;
-    if (out) std::filesystem::rename(other, name_, ignored);  // else the old one stays
+    std::error_code failed;
+    if (out) std::filesystem::rename(other, name_, failed);
+    return out && !failed;
   }
+  const std::string& name() const { return name_; }
 
  private:
   std::string name_;
@@ -83,8 +87,12 @@ int serve_command(const ServeOptions& options) {
   CommunicationsProcessor processor(simulation.bus(), {config.board.dpram_words, options.save_takes_long});
   SimulationLoop loop(simulation.bus(), options.free);
   if (!address.empty()) processor.set_address(address);
-  processor.on_address = [&](const std::string& bytes) { address_file.write(bytes); };
   const auto tell = [&](const std::string& text) { simulation.tell("brick serve: " + text); };
+  processor.on_address = [&](const std::string& bytes) {
+    if (!address_file.write(bytes))
+      tell(fmt::format("{}: cannot be written, the address is lost at the end; expected a writable place",
+                       address_file.name()));
+  };
   server.on_request = [&](EthernetServer::Client client, const EthernetPacket& packet) {
     loop.post([&processor, client, packet] { processor.request(client, packet); });
   };
@@ -136,6 +144,7 @@ int serve_command(const ServeOptions& options) {
     results["seed"] = config.seed;
     results["passed"] = failures.empty();
     if (!failures.empty()) results["failure"] = utf8_text(failures.front());
+    add_origin(results, config.firmware);
     write_json(options.run.json, results);
   }
   return failures.empty() ? 0 : 1;

@@ -184,6 +184,13 @@ def serve_ends():
         with served("--free", "--flash", file) as server, server.client() as client:
             check(client.values("I16") == ["30"], "SIGKILL: SAVEd")
         check(sorted(os.listdir(folder)) == ["flash.bin", "flash.bin.address"], os.listdir(folder))
+        results = pathlib.Path(folder, "results.json")
+        with served("--free", "--flash", file, "--json", str(results)) as server, server.client() as client:
+            (pathlib.Path(folder) / "flash.bin.address.new").mkdir()  # where it would be written
+            client.request(0x40, 0xE0, data=struct.pack("4B", 10, 1, 2, 99))
+            check("flash.bin.address: cannot be written, the address is lost" in server.end(), "a lost address")
+        made = json.loads(results.read_text())
+        check(made["passed"] and all(key in made for key in ("build", "image", "command")), str(made.keys()))
         for bad in ("somewhere\n", "", "999.1.2.3\n", "1,2,3,4\n", "-1.2.3.4\n"):
             (pathlib.Path(folder) / "flash.bin.address").write_text(bad, encoding="ascii")
             r = brick("serve", "--listen", "127.0.0.1:0", "--flash", file)
