@@ -22,11 +22,18 @@ bool segment_gives_way(uint32_t cs) {
   return false;
 }
 
+/* What executes or stands is of the sequence that is made, no move before it. */
+static bool has_begun(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const bool waits = s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_SEGMENTS;
+  return sequences[cs].handed ? !waits : !s->active;
+}
+
 /* While the last pieces of a sequence are executed too, as long as nothing is placed behind them. */
 bool segment_looks(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const bool ends = s->active && s->moves[s->executing].kind == MOVE_SEGMENTS && !s->next_valid;
-  return sequences[cs].looks && (sequences[cs].runs || ends);
+  return sequences[cs].looks && (sequences[cs].runs ? has_begun(cs) : ends);
 }
 
 void segment_order(uint32_t cs, enum lookahead_order order) {
@@ -146,8 +153,9 @@ static bool go_ahead(uint32_t cs, bool alone) {
 }
 
 static bool work_ahead(uint32_t cs, bool alone) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
   if (go_ahead(cs, alone)) return true;
-  show(cs, lookahead_state(cs, coordinate_systems[cs].active));
+  show(cs, lookahead_state(cs, s->active && s->moves[s->executing].kind == MOVE_SEGMENTS));
   return false;
 }
 

@@ -143,4 +143,105 @@ TEST_F(LookaheadOrders, AnOrderThatMeetsTheLastPieceIsObeyed) {
   }
 }
 
+// motion:7.5/2: a sequence that waits behind another move is not executed from lookahead yet. `\` and `<` are H, `>`
+// and R change nothing, nor do single segments; then R goes on. X and Y make a corner; 10 counts/ms are twice what any
+// move asks for.
+TEST_F(LookaheadOrders, OrdersInAMoveBeforeTheSequenceLeaveItAlone) {
+  const std::pair<const char*, double> befores[] = {
+      {"SPLINE1 INC TM100 X1 Y1", 120},
+      {"PVT300 INC X1:0 Y1:0", 120},
+      {"INC TM300 TA40 TS0 X1 Y1", 320}};  // a sequence, of 360 ms: its pieces are all made by then
+  const std::pair<const char*, bool> orders[] = {
+      {"&1H", true},  {"&1\\", true}, {"&1<", true},      {"I5121=4", true},   {"I5121=7", true},
+      {"&1R", false}, {"&1>", false}, {"I5121=6", false}, {"I5121=14", false}, {"I5121=15", false}};
+  for (const auto& [before, ms] : befores)
+    for (const auto& [order, stops] : orders) {
+      SCOPED_TRACE(std::string(before) + " " + order);
+      platform::power_up();
+      fit({"1000X", "1000Y"});
+      ASSERT_EQ(host("I5113=10 I5120=40 I116=100 I117=1 I216=100 I217=1 I5192=1 I5195=50000 P1=0"), "");
+      ASSERT_EQ(host("I119=1 I120=20 I121=0 I122=20 I192=1"), "");
+      ASSERT_EQ(host("DELETE GATHER"), "");
+      ASSERT_EQ(host("&1DEFINE LOOKAHEAD 300,20"), "");
+      store({before, "LINEAR INC TA40 TS10 TM600 X3 Y-3", "DWELL10", "P1=1"});
+      ASSERT_EQ(host("&1B1R"), "");
+      for (int i = 0; i < 1000 && at(1) == 0.0; ++i) platform::servo_ticks(1);
+      double x = at(1);
+      const auto go = [&](double time) {
+        for (unsigned n = ticks_of(time); n > 0; --n) {
+          platform::servo_ticks(1);
+          ASSERT_NEAR(at(2), x <= 1000 && at(1) <= 1000 ? at(1) : 2000 - at(1), 0.01) << "on the path";
+          ASSERT_LE(std::abs(at(1) - x), 10 * kTickMs) << "at " << x;
+          x = at(1);
+        }
+      };
+      go(ms);
+      ASSERT_LT(x, 1000);
+      ASSERT_EQ(host(order), "");
+      go(150);
+      EXPECT_EQ(cs().held, stops);
+      if (order[0] == '&' && ms < 300) { EXPECT_EQ(host("I5121"), "0") << "it does not execute"; }
+      if (stops) {
+        const double stood = x;
+        ASSERT_LT(stood, 1000);
+        go(50);
+        ASSERT_EQ(x, stood);
+        EXPECT_EQ(host("#1J:10"), "") << "as in H";
+        platform::servo_ticks(ticks_of(200));
+        EXPECT_EQ(host("&1R"), "ERR017");
+        ASSERT_EQ(host("#1J="), "");
+        platform::servo_ticks(ticks_of(200));
+        ASSERT_EQ(host("&1R"), "");
+      }
+      go(1500);
+      EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
+      EXPECT_EQ(motors[1].trajectory, -2000 * 3072);
+      EXPECT_EQ(p_variable_read(1), 1.0);
+      EXPECT_FALSE(run_is_running(0));
+      EXPECT_EQ(cs().error, RUN_TIME_NONE);
+    }
+}
+
+// At pauses of the interrupts in which a sequence begins, behind one whose last pieces are executed: it is of either.
+TEST_F(LookaheadOrders, AnOrderWhileTheNextSequenceBeginsChangesNoPath) {
+  const auto start = [](unsigned ticks) {
+    begin({"INC TM100 TA20 TS0", "X2", "X3"});
+    ASSERT_EQ(host("I5195=50000 I5192=1 &1B1R"), "");
+    platform::servo_ticks(ticks);
+  };
+  unsigned last = ticks_of(60), orders = 0;
+  for (start(last); !cs().next_valid; ++last) platform::servo_ticks(1);
+  for (unsigned before = 0; before < 12; ++before)
+    for (unsigned at_pause = 1, pauses = 1; pauses >= at_pause; ++at_pause) {
+      SCOPED_TRACE("at pause " + std::to_string(at_pause) + ", " + std::to_string(before));
+      start(last - 1 - before);
+      fake_task_run_servo();
+      pauses = 0;
+      platform::real_time_in_slices([&] {
+        if (++pauses == at_pause) { ASSERT_EQ(host("&1\\"), ""); }
+      });
+      if (pauses < at_pause) break;
+      ++orders;
+      double x = at(1);
+      const auto go = [&](double ms) {
+        for (unsigned n = ticks_of(ms); n > 0; --n, x = at(1)) {
+          platform::servo_ticks(1);
+          ASSERT_LE(std::abs(at(1) - x), 30 * 1.005 * kTickMs) << "at " << x;
+        }
+      };
+      go(150);
+      ASSERT_EQ(host("&1\\"), "");
+      go(150);
+      const double stood = x;
+      ASSERT_LT(stood, 5000);
+      go(20);
+      ASSERT_EQ(x, stood);
+      ASSERT_EQ(host("&1R"), "");
+      go(600);
+      ASSERT_EQ(motors[0].trajectory, 5000 * 3072);
+      ASSERT_FALSE(run_is_running(0));
+    }
+  EXPECT_GT(orders, 20u);
+}
+
 }  // namespace
