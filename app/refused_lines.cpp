@@ -20,7 +20,7 @@ std::string_view error_meaning(std::string_view error) {
       {"ERR004", "illegal character"},
       {"ERR005", "text of a program, but no buffer is open"},
       {"ERR006", "no room left in the buffer"},
-      {"ERR007", "a buffer is open already"},
+      {"ERR007", "a buffer is open already, or none to CLEAR"},
       {"ERR008", "no answer on the MACRO ring"},
       {"ERR009", "IF, WHILE and their ends do not match"},
       {"ERR010", "a motor of the coordinate system has both limits set"},

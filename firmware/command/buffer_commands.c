@@ -83,7 +83,7 @@ static bool is_binary_open(void) { return open_buffer_kind() == OPEN_BINARY_ROTA
 
 static error_t cmd_clear(struct lexer* lx) {
   (void)lx;
-  if (!program_buffer_open() && !is_binary_open()) return ERR_NEEDS_BUFFER;
+  if (!program_buffer_open() && !is_binary_open()) return ERR_BUFFER_OPEN; /* so numbered whatever is open */
   if (open_buffer_kind() != OPEN_FIXED) return clear_rotary(session.cs);
   program_line_abandon();
   fixed_entry_clear();

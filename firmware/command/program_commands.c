@@ -23,13 +23,13 @@ static error_t cmd_rotary_lines(struct lexer* lx) { /* PR */
   return ERR_NONE;
 }
 
-/* P1:22>P1000:4: program and line, and what that has called. */
+/* P1:22>P1000.4: program and line, and what that has called. */
 static error_t report_trace(const struct program_trace* trace) {
-  if (coordinate_systems[session.cs].pointer == POINTER_NONE) return ERR_NO_PROGRAM;
+  if (coordinate_systems[session.cs].pointer == POINTER_NONE) return ERR_DATA;
   for (uint32_t i = 0; i <= trace->depth; i++) {
     reply_text(i == 0 ? "P" : ">P");
     reply_integer(trace->places[i].program);
-    reply_char(':');
+    reply_char(i == 0 ? ':' : '.');
     reply_integer(trace->places[i].offset);
   }
   reply_end_line();

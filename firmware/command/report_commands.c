@@ -97,9 +97,10 @@ static error_t date(struct lexer* lx) {
   return text("07/01/2014");
 }
 
-static error_t extended_algorithm(struct lexer* lx) {
+/* Of 1.947: no digit of its own, Turbo PMAC2. */
+static error_t extended_version(struct lexer* lx) {
   (void)lx;
-  return text("0");
+  return text("1947001");
 }
 
 static error_t serial_number(struct lexer* lx) {
@@ -120,7 +121,9 @@ static error_t id_number(struct lexer* lx) {
 
 static error_t checksum(struct lexer* lx) {
   (void)lx;
-  return number((int64_t)image_checksum());
+  reply_hex(image_checksum(), 0);
+  reply_end_line();
+  return ERR_NONE;
 }
 
 const struct command_entry report_commands[] = {
@@ -138,8 +141,8 @@ const struct command_entry report_commands[] = {
     {"VID", vendor},
     {"DATE", date},
     {"DAT", date},
-    {"EAVERSION", extended_algorithm},
-    {"EAVER", extended_algorithm},
+    {"EAVERSION", extended_version},
+    {"EAVER", extended_version},
     {"SID", serial_number},
     {"IDNUMBER", id_number},
     {"CHECKSUM", checksum},

@@ -159,7 +159,7 @@ TEST_F(Prelude, TheCallIsOfTheLineThatItStandsBefore) {
   ASSERT_EQ(host("B1R"), "");
   platform::servo_ticks(30);
   const std::string line = "P1:" + std::to_string(std::stoi(label.substr(3)) + 1);
-  EXPECT_EQ(host("PE"), line + ">P500:0");
+  EXPECT_EQ(host("PE"), line + ">P500.0");
   ASSERT_EQ(host("A"), "");
   platform::servo_ticks(30);
   store(1, {"F1000", "PRELUDE1 CALL501", "N7", "X1"});

@@ -114,7 +114,7 @@ TEST_F(Segments, PeShowsTheLineFromWhichItWasCalledToo) {
     const std::string line = host("&1PE");
     if (seen.empty() || seen.back() != line) seen.push_back(line);
   });
-  const std::vector<std::string> lines = {"P1:3>P2:0", "P1:3>P2:1", "P1:4"};  // statements: TM, TA, TS, CALL, X
+  const std::vector<std::string> lines = {"P1:3>P2.0", "P1:3>P2.1", "P1:4"};  // statements: TM, TA, TS, CALL, X
   EXPECT_EQ(seen, lines);
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <sstream>
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/framing.h"
@@ -97,12 +98,14 @@ TEST_F(Image, DateAndTimeFollowTheCpuClockAndTheImageHasAChecksum) {
     }
   EXPECT_EQ(4 * words, end - begin);
   EXPECT_GT(words, 10000u) << "more than 40 KB of code";
+  std::ostringstream text;
+  text << std::hex << std::uppercase << (sum & 0xFFFFFFu);
   const double asked = board.now_ms();
-  EXPECT_EQ(board.send("CHECKSUM\r"), std::to_string(sum & 0xFFFFFFu) + "\r\x06");
+  EXPECT_EQ(board.send("CHECKSUM\r"), text.str() + "\r\x06");
   EXPECT_LT(board.now_ms() - asked, 0.3) << "four cycles a word, all at once, would be 1.5 ms";
   board.reset();
   board.send("I6=1 I3=2\r");
-  EXPECT_EQ(board.send("CHECKSUM\r"), std::to_string(sum & 0xFFFFFFu) + "\r\x06") << "before the background had time";
+  EXPECT_EQ(board.send("CHECKSUM\r"), text.str() + "\r\x06") << "before the background had time";
 }
 
 TEST_F(Image, BackgroundReloadsTheWatchdogCounter) {

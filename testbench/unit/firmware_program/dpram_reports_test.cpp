@@ -377,7 +377,7 @@ TEST_F(DpramReportsTest, ThePlaceIsThatOfTheInnermostCall) {
   background(kSettling);
   const auto set = reports.read_systems(5);
   ASSERT_TRUE(set);
-  EXPECT_EQ(host("PE"), "P1:0>P7:3");
+  EXPECT_EQ(host("PE"), "P1:0>P7.3");
   EXPECT_EQ(set->systems[0].executing, 3U);
 }
 

@@ -62,7 +62,7 @@ TEST_F(MotionProgram, PointersShowProgramAndLine) {
   EXPECT_EQ(host("LIST PC,2"), "0:P1=1|1:CALL7");
   ASSERT_EQ(host("R"), "");
   platform::servo_ticks(9);
-  EXPECT_EQ(host("PC PE"), "P1:1>P7:5|P1:1>P7:3");
+  EXPECT_EQ(host("PC PE"), "P1:1>P7.5|P1:1>P7.3");
   EXPECT_EQ(host("LIST PC"), "5:Y1");
   EXPECT_EQ(host("LIST PE"), "3:X1");
   ASSERT_TRUE(finish());

@@ -200,7 +200,7 @@ TEST_F(ProgramTexts, CommandsOfAProgramDoNotEnterTheHostsBuffer) {
   ASSERT_EQ(host("P2=2"), "");
   sent();
   background(8);
-  EXPECT_EQ(sent(), "\aERR005\r") << "CLEAR, for whom nothing is open";
+  EXPECT_EQ(sent(), "\aERR007\r") << "CLEAR, for whom nothing is open";
   EXPECT_EQ(p_variable_read(1), 1.0) << "executed, not stored";
   ASSERT_EQ(host("P3=3"), "");
   ASSERT_EQ(host("CLOSE"), "");

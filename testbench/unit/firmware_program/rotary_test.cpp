@@ -113,7 +113,7 @@ TEST_F(Rotary, OpenRules) {
   EXPECT_EQ(host("DELETE ALL TEMPS"), "ERR003") << "open";
   EXPECT_EQ(host("CLOSE"), "");
   EXPECT_EQ(host("CLOSE"), "");
-  EXPECT_EQ(host("CLEAR"), "ERR005");
+  EXPECT_EQ(host("CLEAR"), "ERR007");
   EXPECT_EQ(host("DEL ROT"), "");
   EXPECT_EQ(host("DEL ROT"), "");
   EXPECT_EQ(host("OPEN PLCC 3"), "ERR003");

@@ -274,7 +274,8 @@ TEST_F(RunControl, OnLineAxisModes) {
 }
 
 TEST_F(RunControl, ProgramPointers) {
-  EXPECT_EQ(host("PC"), "ERR015");
+  EXPECT_EQ(host("PC"), "ERR003");
+  EXPECT_EQ(host("PE"), "ERR003");
   open();
   for (const char* text : {"X1 Y1", "X2"}) ASSERT_EQ(host(text), "");
   EXPECT_EQ(host("PC"), "P0:0");
