@@ -11,8 +11,7 @@ Tick IsaSlave::next_event() const {
   if (isa_sd_oe() != oe_shown_ || (cycle_ == Cycle::kShow && pic_sel()))
     return now_ + 1;  // pic_rd goes with the command
   const unsigned commands = command_pins();
-  const std::uint8_t la = la_pins();
-  const Tick next = la != la1_ || la != la2_ || la_hit(la) == isa_memcs16_n() ? next_memcs16() : kNever;
+  const Tick next = next_memcs16();
   const Tick edge = next_ref_edge(now_);
   const unsigned at_edge = command_in(edge - 1 - now_);
   if (!settings_still() || ref_shows(at_edge)) return std::min(next, edge);
@@ -22,11 +21,8 @@ Tick IsaSlave::next_event() const {
 }
 
 Tick IsaSlave::next_memcs16() const {
-  for (Tick n = 0; n < 3; ++n) {
-    const unsigned la = n == 0 ? la2_ : n == 1 ? la1_ : la_pins();
-    if (la_hit(la) == isa_memcs16_n()) return now_ + 1 + n;
-  }
-  return kNever;
+  const auto moves = [this](unsigned la) { return la_hit(la) == isa_memcs16_n(); };
+  return moves(la2_) ? now_ + 1 : moves(la1_) ? now_ + 2 : moves(la_pins()) ? now_ + 3 : kNever;
 }
 
 void IsaSlave::advance(Tick t) {

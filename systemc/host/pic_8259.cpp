@@ -10,9 +10,9 @@ static_assert(((words::kIcw2.address ^ words::kOcw1.address) & 3) == 0 &&
               ((words::kIcw4.address ^ words::kOcw1.address) & 3) == 0);
 
 unsigned Pic8259::Registers::rank(std::uint8_t bits) const {
-  for (unsigned r = 0; r < 8; ++r)
-    if ((bits >> level_of(r) & 1) != 0) return r;
-  return 8;
+  unsigned r = 0;
+  while (r < 8 && (bits >> level_of(r) & 1) == 0) ++r;
+  return r;
 }
 
 std::uint8_t Pic8259::rdata() const {

@@ -1,5 +1,6 @@
 // What the blocks of the host's side show in a reset, whatever was under way, and behind it until something happens.
 #include "testbench/unit/host/dpram_bench.h"
+#include "testbench/unit/host/host_port_bench.h"
 #include "testbench/unit/host/isa_slave_fixture.h"
 
 namespace brick {
@@ -20,6 +21,9 @@ TEST_F(IsaSlaveTest, AResetSelectsNothingAndClearsWhatTheBlocksSee) {
       ticks(12);
       both.in.*command = false;
       ticks(30);
+      both.in.isa_resetdrv = true;
+      ticks(address == 0x217 ? 0 : 12);
+      both.in.isa_resetdrv = false;
       both.reset();
       const Outputs shown = IsaBench::show(model);
       for (const auto& [name, value] : shown) {
@@ -59,6 +63,23 @@ TEST_F(DpramResetTest, ReadWordsAreZeroAndNobodyOwnsAWord) {
       EXPECT_EQ(both.get(output), 0u) << output;
     EXPECT_EQ(cpu_read(6), 0x1234u) << "at once";
   }
+}
+
+TEST_F(HostPortTest, AResetLeavesNoWordOnItsWay) {
+  cpu_write(kHotx, 0x123456);
+  both_.ref(2);
+  host_send(0x654321);
+  both_.ref(2);
+  host_write(kData5, 0x77);
+  host_write(kData6, 0x88);
+  ASSERT_EQ(cpu_peek(kHorx), 0x654321u);
+  ASSERT_EQ(host_peek(kData6), 0x34u);
+  both_.reset();
+  EXPECT_EQ(cpu_peek(kHorx), 0u);
+  for (const std::uint8_t byte : {kData5, kData6, kData7}) EXPECT_EQ(host_peek(byte), 0u) << unsigned{byte};
+  host_write(kData7, 0x99);
+  both_.ref(2);
+  EXPECT_EQ(cpu_read(kHorx), 0x000099u) << "nor a byte of before";
 }
 
 }  // namespace

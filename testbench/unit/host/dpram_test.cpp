@@ -103,6 +103,12 @@ TEST_F(DpramTest, HostWritesSingleBytes) {
   EXPECT_EQ(cpu_read(9), 0x2233u);
   host_write(9, 0xFFFF, 0);
   EXPECT_EQ(cpu_read(9), 0x2233u);
+  for (const unsigned before : {0x0000u, 0xFFFFu})
+    for (const unsigned lanes : {1u, 2u}) {
+      host_write(9, before);
+      host_write(9, ~before, lanes);
+      EXPECT_EQ(cpu_read(9), before ^ (lanes == 1 ? 0x00FFu : 0xFF00u));
+    }
 }
 
 TEST_F(DpramTest, CpuDataMayComeTwoTicksAfterTheStrobe) {

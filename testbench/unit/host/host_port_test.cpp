@@ -62,7 +62,7 @@ TEST_F(HostPortTest, AWriteTouchesNoOtherRegister) {
     bool host;
     unsigned addr, value, other;  // 0, 0: not written
   };
-  std::vector<Word> words = {{true, kIcr, 0x18, 0x0C},  {true, kCvr, 0x25, 0x4A},       {true, kIvr, 0x77, 0x81},
+  std::vector<Word> words = {{true, kIcr, 0x18, 0x0C},  {true, kCvr, 0xA5, 0xCA},       {true, kIvr, 0x77, 0x81},
                              {false, kHcr, 0x18, 0x0E}, {false, kHpcr, 0x5A2C, 0xA513}, {false, kHbar, 0x45, 0x9B},
                              {true, kUnused, 0, 0},     {false, kHorx, 0x123456, 0},    {true, kData5, 0xAB, 0xAB},
                              {true, kData6, 0xCD, 0xCD}};

@@ -184,6 +184,22 @@ TEST_F(IsaSlaveTest, IochrdyIsLowWithin70NanosecondsAtThePads) {
     }
 }
 
+// It is the RAM that is waited for, in cycles of the window alone.
+TEST_F(IsaSlaveTest, IochrdyIsHighInAllOtherCycles) {
+  for (const unsigned address : {0x212u, 0x219u, 0x21Cu, 0x220u, 0xE0000u})
+    for (const auto command : {&Inputs::isa_ior_n, &Inputs::isa_iow_n, &Inputs::isa_memr_n, &Inputs::isa_memw_n}) {
+      set_address(address);
+      ticks(11);
+      both.in.*command = false;
+      for (int n = 0; n < 40; ++n) {
+        EXPECT_EQ(both.get("isa_iochrdy"), 1u) << std::hex << address;
+        tick();
+      }
+      both.in.*command = true;
+      ticks(12);
+    }
+}
+
 TEST_F(IsaSlaveTest, IochrdyIsLowWhileTheMemoryIsBusyAndDataFollows) {
   both.in.mem_rdata = 0x1111;
   both.in.isa_sbhe_n = false;
@@ -229,6 +245,20 @@ TEST_F(IsaSlaveTest, BusIsDrivenInReadsOfOursOnly) {
     ticks(20);
     EXPECT_EQ(both.get("isa_sd_oe"), 1u) << "I/O is on the low lane, whatever SBHE# is";
     both.in.isa_ior_n = true;
+    ticks(15);
+  }
+  for (const bool memory : {false, true}) {  // another read command that falls as the first one ends is none of ours
+    set_address(memory ? 0xD0000 : 0x212);
+    ticks(11);
+    (memory ? both.in.isa_memr_n : both.in.isa_ior_n) = false;
+    ticks(30);
+    EXPECT_NE(both.get("isa_sd_oe"), 0u);
+    std::swap(both.in.isa_memr_n, both.in.isa_ior_n);
+    for (int n = 0; n < 20; ++n) {
+      EXPECT_EQ(both.get("isa_sd_oe"), 0u) << n;
+      tick();
+    }
+    both.in.isa_memr_n = both.in.isa_ior_n = true;
     ticks(15);
   }
   for (unsigned offset = 0; offset < 16; ++offset) never(0x220 + offset, &Inputs::isa_ior_n);

@@ -55,6 +55,32 @@ TEST_F(IsaSlaveTest, ReadTooShortForItsDataTakesNothing) {
   EXPECT_GT(reads, 0u);
 }
 
+// However short a command is: it does nothing, or a write has its own data; and nothing of it is left for the next one.
+TEST_F(IsaSlaveTest, ShortCommandIsNoneOrWhole) {
+  unsigned value = 0, whole = 0;
+  for (const auto command : {&Inputs::isa_iow_n, &Inputs::isa_ior_n, &Inputs::isa_memr_n})
+    for (int phase = 0; phase < 3; ++phase)
+      for (int width = 1; width <= 8; ++width) {
+        SCOPED_TRACE(::testing::Message() << "phase " << phase << ", low for " << width);
+        strobes.clear();
+        set_address(0x217);
+        both.in.isa_sd = static_cast<std::uint16_t>(++value & 0xFF);
+        at_phase(phase);
+        both.in.*command = false;
+        ticks(width);
+        both.in.*command = true;
+        ticks(20);
+        if (command == &Inputs::isa_iow_n && !strobes.empty()) {
+          EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_wr", 7, value & 0xFF}}));
+          ++whole;
+        }
+        strobes.clear();
+        io_write(0x216, 0x55);
+        EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_wr", 6, 0x55}}));
+      }
+  EXPECT_GE(whole, 3u * 5) << "all that two edges of clk_pwm and one of clk_ref see";
+}
+
 // host-bus:3.9/6 of an 8259: a read acknowledges if, and only if, it has shown data for a tick, however short it was.
 TEST_F(IsaSlaveTest, ReadAcknowledgesIfAndOnlyIfItHasShownData) {
   unsigned shown = 0, not_shown = 0;
