@@ -49,7 +49,7 @@ void segment_order(uint32_t cs, enum lookahead_order order) {
 bool segment_stands(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   return sequences[cs].runs && sequences[cs].looks && sequences[cs].order == LOOKAHEAD_NONE && lookahead_stands(cs) &&
-         !s->active && !s->next_valid && piece_ring_is_empty(&s->ring);
+         !s->active && has_begun(cs) && piece_ring_is_empty(&s->ring);
 }
 
 void segment_stop(uint32_t cs) {

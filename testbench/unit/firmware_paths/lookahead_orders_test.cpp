@@ -244,4 +244,28 @@ TEST_F(LookaheadOrders, AnOrderWhileTheNextSequenceBeginsChangesNoPath) {
   EXPECT_GT(orders, 20u);
 }
 
+// motion:7.5/5, whatever is calculated behind the sequence.
+TEST_F(LookaheadOrders, WhereItStandsMotorsMayBeJogged) {
+  for (const char* behind : {"DWELL50", "RAPID X10", "SPLINE1 TM50 X10", "P1=1"}) {
+    SCOPED_TRACE(behind);
+    begin({"TM200 TA20 TS0", "X5", behind});
+    ASSERT_EQ(host("I119=1 I120=20 I121=0 I122=20 I192=1 &1B1R"), "");
+    wait_ms(130);
+    ASSERT_EQ(host("&1\\"), "");
+    wait_ms(200);
+    const std::int64_t stands = motors[0].trajectory;
+    ASSERT_LT(stands, 5000 * 3072);
+    ASSERT_EQ(host("#1J:100"), "");
+    wait_ms(200);
+    EXPECT_EQ(motors[0].trajectory, stands + 100 * 3072);
+    EXPECT_EQ(host("&1R"), "ERR017");
+    ASSERT_EQ(host("#1J="), "");
+    wait_ms(200);
+    ASSERT_EQ(host("&1R"), "");
+    wait_ms(1200);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(motors[0].trajectory, (std::string(behind).find('X') == std::string::npos ? 5000 : 10000) * 3072);
+  }
+}
+
 }  // namespace
