@@ -116,8 +116,19 @@ static error_t jog_rest(struct lexer* lx) {
   return motor_jog(session.motor, MOTOR_JOG_STOP);
 }
 
+/* J=^d: back to where it was, until a trigger. */
+static error_t jog_back_until(struct lexer* lx) {
+  const uint32_t motor = session.motor;
+  double beyond;
+  error_t error = lexer_constant(lx, &beyond);
+  if (error == ERR_NONE) error = close_loop(motor, may_jog(motor));
+  if (error == ERR_NONE) (void)jog_until(motor, jog_position_before(motor), motor_position_of(motor, beyond));
+  return error;
+}
+
 static error_t jog_equals(struct lexer* lx) {
   if (line_goes_on(lx)) return motor_jog(session.motor, MOTOR_JOG_BACK);
+  if (lexer_accept(lx, '^')) return jog_back_until(lx);
   return jog_distance(lx, FROM_ZERO, lexer_accept(lx, '='));
 }
 

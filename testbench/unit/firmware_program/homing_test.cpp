@@ -294,7 +294,7 @@ TEST_F(Homing, ATriggerWhileSomethingElseIsAskedForMakesHomeOnly) {
 TEST_F(Homing, JogUntilATriggerGoesOnFromThere) {
   begin(500);
   const double zero = zero_;
-  for (const char* form : {"J=3000^-25.5", "J:3000^-25.5", "J^3000^-25.5", "J==3000^-25.5"}) {
+  for (const char* form : {"J=3000^-25.5", "J:3000^-25.5", "J^3000^-25.5", "J==3000^-25.5", "J==3000 J=0 J=^-25.5"}) {
     ASSERT_EQ(host(std::string("#1J=0 ") + form), "") << form;
     const double at = place() + 700.75;
     trigger_at(at);
@@ -319,8 +319,13 @@ TEST_F(Homing, JogUntilATriggerThatDoesNotComeEndsAtItsTarget) {
   EXPECT_EQ(commanded(), -800);
   EXPECT_TRUE(motors[0].status.trigger_move) << "not found";
   EXPECT_FALSE(motors[0].status.home_search);
-  ASSERT_EQ(host("J=0"), "");
+  ASSERT_EQ(host("J==700 J=0"), "");
   EXPECT_FALSE(motors[0].status.trigger_move);
+  settle();
+  ASSERT_EQ(host("J=^5"), "");
+  settle();
+  EXPECT_EQ(commanded(), 700) << "where it was before";
+  EXPECT_EQ(host("J=^"), "ERR003");
 }
 
 TEST_F(Homing, HmzZeroesTheCommandedPositionOfAMovingMotorToo) {
