@@ -23,10 +23,10 @@ static bool belongs_together(uint32_t mask) {
   return (mask & ~(uint32_t)TRIPLET_XYZ) == 0 || (mask & ~(uint32_t)TRIPLET_UVW) == 0 || (mask & (mask - 1u)) == 0;
 }
 
-/* {scale}axis{+-scale axis}{+-offset}; a scale may be left out. */
+/* {scale}axis{+-scale axis}{+-offset}; a scale may be left out, and one at least is not 0. */
 static error_t parse(struct lexer* lx, struct axis_definition* d) {
   uint32_t mask = 0, axis;
-  bool first = true;
+  bool first = true, moves = false;
   for (;;) {
     double value = 1.0;
     char c = lexer_peek(lx);
@@ -41,6 +41,7 @@ static error_t parse(struct lexer* lx, struct axis_definition* d) {
       if (mask & (1u << axis)) return ERR_DATA;
       mask |= 1u << axis;
       d->scale[axis] = value;
+      moves = moves || value != 0.0;
     } else {
       if (!has_number || first) return ERR_DATA;
       d->offset = value;
@@ -48,7 +49,7 @@ static error_t parse(struct lexer* lx, struct axis_definition* d) {
     }
     first = false;
   }
-  return belongs_together(mask) ? ERR_NONE : ERR_DATA;
+  return moves && belongs_together(mask) ? ERR_NONE : ERR_DATA;
 }
 
 static void report(const struct axis_definition* d) {

@@ -294,7 +294,9 @@ TEST_F(RunControl, AxisDefinitions) {
   EXPECT_EQ(host("&2#1->"), "0");
   EXPECT_EQ(host("&1#1->100X+20A"), "ERR003") << "two groups of axes";
   EXPECT_EQ(host("#1->10X+5X"), "ERR003") << "one axis twice";
+  for (const char* nothing : {"#1->0X", "#1->0X+0Y", "#1->0A+500"}) EXPECT_EQ(host(nothing), "ERR003") << nothing;
   EXPECT_EQ(host("#1->"), "1000X") << "as it was";
+  EXPECT_EQ(host("#8->0X+5Y #8-> #8->0"), "5Y");
   EXPECT_EQ(host("#1->0"), "");
   EXPECT_EQ(host("#1->"), "0");
   EXPECT_EQ(host("&2#1->X"), "");
