@@ -21,6 +21,7 @@ bool motor_may_enable(uint32_t motor) { return is_activated(motor) && status_mot
 bool motor_may_close(uint32_t motor) {
   const uint32_t first = i_motor(motor + 1u, IXX03_FEEDBACK_ADDRESS); /* then velocity */
   return motor_may_enable(motor) && !phasing_is_missing(motor) && !phasing_is_searched(motor) &&
+         i_integer(i_esa(motor + 1u, IYY00_EXTENDED_SERVO)) == 0 &&
          !conversion_table_is_not_built((uint32_t)i_integer(first)) &&
          !conversion_table_is_not_built((uint32_t)i_integer(first + 1u));
 }

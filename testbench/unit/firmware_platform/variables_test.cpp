@@ -102,6 +102,16 @@ TEST(IVariables, TheSwitchOfTheExtendedServoIsOneBit) {
   EXPECT_EQ(c.line("I3300=3 I3300 #1? I3300=2 I3300 I3301=0.5 I3301 #1?"), "1|950000000000|0|0.5|850000000000");
 }
 
+// firmware:9.3, motion:1.1/11. The switch of motor 2 is I3350.
+TEST(IVariables, GainsOfTheExtendedServoAreThereWhileItIsOn) {
+  Controller c;
+  EXPECT_EQ(c.line("I3309..3340=5 I3309 I3310 I3339 I3340"), "5|0|0|5");
+  EXPECT_EQ(c.line("I3300=1 I3310 I3339 I3310=6.5 I3339=7 I3310 I3339"), "0|0|6.5|7");
+  EXPECT_EQ(c.line("I3360=8 I3360 I3300=0 I3310 P(I3310+1)=9 P1"), "0|0|9");
+  EXPECT_EQ(c.line("I3310=4 I3310 I3350=1 I3360=8 I3360 I3389=9 I3389"), "0|8|9");
+  EXPECT_EQ(c.line("I3350=0 I3360 I3350=1 I3360"), "0|8") << "kept meanwhile";
+}
+
 TEST(IVariables, NumbersHaveNoFractionUnlessComputed) {
   Controller c;
   c.line("P1=4 P2=6");

@@ -89,12 +89,11 @@ TEST_F(PositionLoop, ProportionalGain) {
 }
 
 // motion:1.1/11
-TEST_F(PositionLoop, TheExtendedAlgorithmIsNotBuilt) {
-  c_.line("I3300=1 I3301=0.5 I3310=7 I130=2000 I131=0 I132=0 I133=0");
-  EXPECT_EQ(c_.line("I3300 I3301 I3310"), "1|0.5|7");
-  close(0, 0);
-  cycle(100 * 32 * 96, 0, 0);
-  EXPECT_NEAR(output_, 100 * 2000 * 96 / 524288.0, 1 / 256.0);
+TEST_F(PositionLoop, TheExtendedAlgorithmClosesNoLoop) {
+  EXPECT_EQ(c_.line("I100=1 I3300=1 I3301=0.5 I3310=7 I3300 I3301 I3310"), "1|0.5|7");
+  for (const char* command : {"J/", "J+", "HM"}) EXPECT_EQ(c_.line(std::string("#1") + command), "ERR018") << command;
+  EXPECT_EQ(c_.line("I3300=0 #1J/"), "");
+  EXPECT_EQ(c_.line("I200=1 #2J/"), "") << "each motor has a switch of its own";
 }
 
 // Errors and steps of more than 32 bits: Ixx67 and the ends of the output hold, and the sign is right.
