@@ -122,6 +122,7 @@ struct coordinate_system {
   volatile bool quit;           /* Q, or the end of a step: calculate no more */
   bool ended;                   /* R: the end of the program was reached since its start, `quit` is that */
   volatile bool end_block;      /* `/`: no further move is started */
+  bool quit_at_block;           /* B: `/` of motors, a Q that status shows until a start */
   /* moves are dropped: set by B or R; virtual axes stand still, motors leave the path; R finds the position and clears
    * it */
   volatile bool settling;

@@ -64,7 +64,7 @@ static uint32_t status1(const struct coordinate_system* s) {
   uint32_t word = bit(!s->vector_absolute, S1_VECTOR_INCREMENTAL) |
                   bit(s->running && s->continuous && !s->unblended, S1_CONTINUOUS) | bit(s->time_mode, S1_TIME_MODE) |
                   bit(s->active && s->moves[s->executing].blended, S1_BLENDING) | bit(steps, S1_STEP) |
-                  bit(s->running, S1_RUNNING);
+                  bit(s->running && !s->ended, S1_RUNNING); /* until its last move is calculated */
   for (uint32_t axis = 0; axis < AXIS_COUNT;
        axis++) { /* A lowest, Z highest: incremental, then feedrate axis above it */
     word |= bit((s->incremental >> axis) & 1u, S1_AXIS_A + 2 * axis);
@@ -129,8 +129,8 @@ uint32_t motion_cs_status(uint32_t cs, unsigned word) {
   const bool segments = s->active && s->moves[s->executing].kind == MOVE_SEGMENTS;
   return bit(segments && segment_looks(cs), S2_LOOKAHEAD) | bit(segments, S2_SEGMENTS) |
          bit(s->error != RUN_TIME_NONE, S2_RUN_TIME_ERROR) | bit(is_in_position(cs), S2_IN_POSITION) |
-         bit(rotary_buffers[cs].full, S2_ROTARY_FULL) | bit(s->end_block, S2_END_BLOCK) | bit(has_dwell(s), S2_DWELL) |
-         faults(cs) | MODES[s->mode];
+         bit(rotary_buffers[cs].full, S2_ROTARY_FULL) | bit(s->end_block || s->quit_at_block, S2_END_BLOCK) |
+         bit(has_dwell(s), S2_DWELL) | faults(cs) | MODES[s->mode];
 }
 
 uint32_t motion_global_status2(void) {

@@ -63,6 +63,7 @@ error_t run_point(uint32_t cs, double program) {
     s->settling = true;
     cs_awake |= 1u << cs;
   }
+  s->quit_at_block = false;
   s->end_block = s->must_return = s->must_have_returned = s->restarts = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
@@ -162,7 +163,7 @@ error_t run_start(uint32_t cs, bool single_step) {
     s->ended = s->ended && waits;
     if (!s->next_valid) s->may_join = false;
   }
-  s->end_block = false;
+  s->end_block = s->quit_at_block = false;
   s->quit = s->ended || (single_step && waits); /* it stands at its top again, for another start; one of those alone */
   segment_go_on(cs, single_step && waits);
   s->stepping = single_step;
@@ -216,6 +217,7 @@ void run_abort(uint32_t cs) {
   uint32_t state = hal_mask_servo();
   drop_moves(cs);
   s->running = s->quit = s->end_block = s->stepping = s->continuous = s->matching = s->must_return = false;
+  s->quit_at_block = false;
   s->must_have_returned = s->restarts = false;
   hal_unmask(state);
   release_hold(cs);
@@ -293,6 +295,7 @@ void run_end_block(uint32_t cs) {
   if (!s->running) return;
   if (s->motors != 0) {
     run_quit(cs);
+    s->quit_at_block = true;
     return;
   }
   const uint32_t state = hal_mask_servo();

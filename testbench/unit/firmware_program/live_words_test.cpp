@@ -259,10 +259,13 @@ TEST_F(LiveWords, StatusTellsBlendedMovesAndThoseThatWait) {
 }
 
 TEST_F(LiveWords, AProgramThatHasEndedAsksForNothing) {
-  for (const char* line : {"OPEN PROG 1 CLEAR", "TM10 TA0 TS0 X1", "CLOSE", "&1B1R"}) ASSERT_EQ(host(line), "") << line;
+  for (const char* line : {"OPEN PROG 1 CLEAR", "TM40 TA0 TS0 X1", "X2", "CLOSE", "&1B1R"})
+    ASSERT_EQ(host(line), "") << line;
   platform::servo_ticks(6);
   EXPECT_EQ(host("??").substr(0, 6), "A80039") << "runs, continuous, moves by time";
-  platform::servo_ticks(200);
+  platform::servo_ticks(120);  // 54 ms
+  EXPECT_EQ(host("??").substr(0, 6), "A8003C") << "X2 executes, it began blended, and nothing is left to calculate";
+  platform::servo_ticks(100);
   EXPECT_EQ(host("??").substr(0, 6), "A80028") << "moves by time";
 }
 

@@ -42,6 +42,44 @@ TEST_F(StatusOfMoves, TheMode) {
   }
 }
 
+// Bit 0 of word 1: moves of 500 ms. What stands behind one is read when that begins.
+TEST_F(StatusOfMoves, RunningEndsWithTheCalculationOfTheLastMove) {
+  store({"LINEAR INC TA100 TS0 TM500", "X1", "X1"});
+  ASSERT_EQ(host("&1B1R"), "");
+  ticks(300);
+  EXPECT_TRUE(bit(1, 0)) << "the second is calculated, the end is not reached";
+  ticks(400);
+  EXPECT_FALSE(bit(1, 0)) << "the second executes, nothing is left to calculate";
+  EXPECT_FALSE(bit(2, 17)) << "and not executed";
+  EXPECT_EQ(host("B1"), "ERR001");
+  ticks(1200);
+  EXPECT_FALSE(bit(1, 0));
+  EXPECT_EQ(host("B1"), "");
+}
+
+// Bit 14 of word 2, in segments and without.
+TEST_F(StatusOfMoves, StopAtTheEndOfABlock) {
+  for (const char* i5113 : {"0", "10"}) {
+    store({"LINEAR INC TA20 TS0 TM300", "X1", "X1", "X1", "X1", "X1"});
+    ASSERT_EQ(host(std::string("I5113=") + i5113 + " &1B1R"), "");
+    ticks(100);
+    EXPECT_FALSE(bit(2, 14)) << i5113;
+    ASSERT_EQ(host("/"), "");
+    EXPECT_TRUE(bit(2, 14)) << i5113;
+    ticks(1200);
+    EXPECT_FALSE(run_is_running(0)) << i5113;
+    EXPECT_TRUE(bit(2, 14)) << "stopped by it: " << i5113;
+    ASSERT_EQ(host("R"), "");
+    EXPECT_FALSE(bit(2, 14)) << i5113;
+    ticks(100);
+    ASSERT_EQ(host("Q"), "");
+    EXPECT_FALSE(bit(2, 14)) << i5113;
+    ticks(1200);
+    ASSERT_EQ(host("A"), "");
+    ticks(200);
+  }
+}
+
 // Bits 23 to 6 of word 1: a pair an axis, A lowest; then vectors, time.
 TEST_F(StatusOfMoves, AxesAndTimes) {
   EXPECT_EQ(word(1), 0xA80020u);

@@ -196,7 +196,7 @@ TEST_F(Protection, ForegroundInPosition) {
 }
 
 TEST_F(Protection, NothingIsControlledWithoutClocks) {
-  run({"TM1000 X100"});
+  run({"TM1000 X100", "X200"});
   servo(6);
   ASSERT_TRUE(runs());
   flags(1, kFault);  // what is read is worth nothing either

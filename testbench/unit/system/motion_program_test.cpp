@@ -15,9 +15,10 @@ class MotionPrograms : public Controller {
   std::string status() { return ask("??"); }
   bool running() { return std::stoul(status().substr(0, 6), nullptr, 16) & 1; }
   bool error() { return (std::stoul(status().substr(6, 6), nullptr, 16) >> 22) & 1; }
+  bool ended() { return !running() && ((std::stoul(status().substr(6, 6), nullptr, 16) >> 17) & 1) != 0; }
   bool finish(int ms) {
-    for (; ms > 0 && running(); --ms) wait(ms_to_ticks(1));
-    return !running();
+    for (; ms > 0 && !ended(); --ms) wait(ms_to_ticks(1));
+    return ended();
   }
 };
 

@@ -259,7 +259,8 @@ TEST_P(StreamOn, FixedBuffersKeepAndExecuteEachLineInOrder) {
     ASSERT_EQ(ask("CLOSE"), "");
     ASSERT_EQ(ask("LIST PROG " + program), listing);
     ASSERT_EQ(ask("&1 B" + program + " R"), "");
-    for (unsigned tries = 0; (std::stoul(ask("??").substr(0, 6), nullptr, 16) & 1) != 0; ++tries) {
+    const auto ended = [this] { return (std::stoul(ask("??").substr(0, 12), nullptr, 16) & 0x1020000u) == 0x20000u; };
+    for (unsigned tries = 0; !ended(); ++tries) {  // all is calculated, and nothing executes
       ASSERT_LT(tries, 1000u) << "the program does not end";
       wait(ms_to_ticks(1));
     }
