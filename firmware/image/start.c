@@ -72,13 +72,26 @@ static void check_saved(void) {
   if (initial_ics != gate_ic_configuration()) status_set(STATUS_CONFIGURATION);
 }
 
-static void load_user_memory(void) {
-  const uint32_t end = memory_buffers_end();
-  for (uint32_t first = 0; first < end; first += CLEARED_AT_ONCE) {
+static void clear_memory(uint32_t first, uint32_t end) {
+  for (; first < end; first += CLEARED_AT_ONCE) {
     hal_clear_words(first, end - first < CLEARED_AT_ONCE ? end - first : CLEARED_AT_ONCE);
     hal_watchdog_strobe();
   }
-  axis_definition_initialize();
+}
+
+/* `$$$***` leaves M definitions, P, Q and axis definitions as they are. */
+static void clear_user_memory(enum start_mode mode) {
+  if (mode == START_DEFAULTS) {
+    clear_memory(0, MEMORY_M_DEFINITIONS);
+    clear_memory(MEMORY_BUFFERS, memory_buffers_end());
+  } else {
+    clear_memory(0, memory_buffers_end());
+    axis_definition_initialize();
+  }
+}
+
+static void load_user_memory(enum start_mode mode) {
+  clear_user_memory(mode);
   *hal_y(MEMORY_DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
   regions_initialize();
   gather_initialize();
@@ -117,7 +130,7 @@ void start(enum start_mode mode) {
   i_variable_write_hardware();
   hal_watchdog_strobe();
   check_saved();
-  load_user_memory();
+  load_user_memory(mode);
   i_variable_write_ssi();
   session_initialize();
   rotary_initialize();

@@ -137,7 +137,7 @@ TEST(SavedContent, AllOfItComesBack) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Controller c;
     for (const unsigned size : {40u, 3u}) {  // the second time less than the first
-      c.line("$$$***");
+      c.line("UNDEFINE ALL $$$***");
       c.line("I3=2 I6=1");
       const Content content = random_content(10 * seed + size, size);
       enter(c, content);
@@ -376,7 +376,7 @@ TEST(SavedContent, AnythingBehindAGoodChecksumHarmsNothing) {
   std::mt19937 random(random_seed(5));
   Controller c;
   for (unsigned i = 0; i < 40; ++i) {
-    c.line("$$$***");
+    c.line("UNDEFINE ALL $$$***");
     c.line("I3=2 I6=1 PASSWORD=");
     enter(c, random_content(i, 2));
     c.line("PASSWORD=something");

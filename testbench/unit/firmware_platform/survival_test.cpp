@@ -113,9 +113,9 @@ TEST(Survival, AxisDefinitionsAreSaved) {
   c.restart();
   c.send("I6=1 I3=2\r");
   EXPECT_EQ(c.line("&1#1-> #2-> &3#32->"), "1000X-0.25Y+500|100A|I");
-  EXPECT_EQ(c.line("$$$***"), "");
+  EXPECT_EQ(c.line("&1#2->7A $$$***"), "");
   c.send("I6=1 I3=2\r");
-  EXPECT_EQ(c.line("&1#1->"), "0");
+  EXPECT_EQ(c.line("&1#1-> #2-> &3#32->"), "1000X-0.25Y+500|7A|I") << "as they were, firmware:5.10/2";
 }
 
 // What programs have queued may start them again; where they do so for ever, $$$*** takes them away.

@@ -317,11 +317,12 @@ TEST(SavedData, SurvivesResetAndReInitialisationDoesNotUseIt) {
   EXPECT_EQ(c.line("I17 P100 Q5 I7002 I5189"), "33|1.25|-7|1|250.5");
   EXPECT_EQ(c.line("M7->"), "Y:$78002,8,16,S");
   EXPECT_EQ(x(0x078004) >> 20, 1u);
-  c.line("$$$*** I17=5 P100=5");
+  c.line("P100=2.5 M9->*M9=6 #1->1000X+7 $$$*** I17=5 P100=5");
   c.line("I3=2 I6=1");
-  EXPECT_EQ(c.line("I17 P100 I7002"), "10|0|3");
+  EXPECT_EQ(c.line("I17 I7002"), "10|3");
+  EXPECT_EQ(c.line("P100 Q5 M7-> M9 #1->"), "2.5|-7|Y:$78002,8,16,S|6|1000X+7") << "not of the defaults, nor as saved";
   c.restart();
-  EXPECT_EQ(c.line("I17"), "33");
+  EXPECT_EQ(c.line("I17 P100 M9 #1->"), "33|1.25|0|0");
 }
 
 TEST(SavedData, JumperE3StartsWithDefaults) {
