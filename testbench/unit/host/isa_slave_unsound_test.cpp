@@ -75,8 +75,11 @@ TEST_F(IsaSlaveTest, ShortCommandIsNoneOrWhole) {
           ++whole;
         }
         strobes.clear();
-        io_write(0x216, 0x55);
-        EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_wr", 6, 0x55}}));
+        both.in.isa_iow_n = false;  // nothing else has moved
+        ticks(63);
+        both.in.isa_iow_n = true;
+        ticks(20);
+        EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_wr", 7, value & 0xFF}}));
       }
   EXPECT_GE(whole, 3u * 5) << "all that two edges of clk_pwm and one of clk_ref see";
 }
