@@ -27,31 +27,36 @@ module channel_subcount (
   logic [4:0]  lag_q;               // SCLK periods not yet added
 
   logic        divides, fits, add, two, over;
+  logic [1:0]  carry;
   logic [22:0] rest;
   logic [23:0] shifted;
-  logic [24:0] sum;
+  logic [24:0] less, sum, once, twice;  // bit 24 of a difference is its borrow
   logic [13:0] e_next;
 
   // One division step.
   assign divides = steps_q != 4'd0;
   assign shifted = {remainder_q, steps_q == Steps};
-  assign fits    = shifted >= {1'b0, t1_i};
+  assign less    = {1'b0, shifted} - {2'b00, t1_i};
+  assign fits    = ~less[24];
 
   // One or two SCLK periods more.
-  assign add = valid_q & ~divides & (lag_q != 5'd0);
-  assign two = lag_q > 5'd1;
-  assign sum = {2'b00, rest_q} + (two ? {1'b0, remainder_q, 1'b0} : {2'b00, remainder_q});
+  assign add   = valid_q & ~divides & (lag_q != 5'd0);
+  assign two   = lag_q > 5'd1;
+  assign sum   = {2'b00, rest_q} + (two ? {1'b0, remainder_q, 1'b0} : {2'b00, remainder_q});
+  assign once  = sum - {2'b00, t1_i};
+  assign twice = sum - {1'b0, t1_i, 1'b0};
   always_comb begin
-    rest   = sum[22:0];
-    e_next = {2'b00, e_q} + (two ? {quotient_q, 1'b0} : {1'b0, quotient_q});
-    if (sum >= {1'b0, t1_i, 1'b0}) begin
-      rest   = sum[22:0] - {t1_i[21:0], 1'b0};
-      e_next = e_next + 14'd2;
-    end else if (sum >= {2'b00, t1_i}) begin
-      rest   = sum[22:0] - t1_i;
-      e_next = e_next + 14'd1;
+    rest  = sum[22:0];
+    carry = 2'd0;
+    if (!twice[24]) begin
+      rest  = twice[22:0];
+      carry = 2'd2;
+    end else if (!once[24]) begin
+      rest  = once[22:0];
+      carry = 2'd1;
     end
   end
+  assign e_next = {2'b00, e_q} + (two ? {quotient_q, 1'b0} : {1'b0, quotient_q}) + {12'd0, carry};
   assign over = |e_next[13:12];
 
   // A division shifts all of the quotient before it out.
@@ -67,7 +72,7 @@ module channel_subcount (
       if (divides) begin
         steps_q     <= steps_q - 4'd1;
         quotient_q  <= {quotient_q[11:0], fits};
-        remainder_q <= fits ? shifted[22:0] - t1_i : shifted[22:0];
+        remainder_q <= fits ? less[22:0] : shifted[22:0];
       end
       if (add) begin
         rest_q <= rest;
@@ -79,6 +84,8 @@ module channel_subcount (
 
   assign fraction_o   = down_i ? ~e_q : e_q;
   assign fraction_d_o = count_i ? {12{down_new_i}} : fraction_o;
+  logic unused;  // a difference that is not negative is below T1
+  assign unused = &{1'b0, less[23], once[23], twice[23]};
 
 endmodule : channel_subcount
 
