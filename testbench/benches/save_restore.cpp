@@ -166,8 +166,9 @@ class SaveRestore {
     b_.expect("PASSWORD=open sesame", "ERR002");
     b_.expect("PASSWORD=Open sesame", "");
     b_.expect("LIST PROG 1000", "X1");
+    const std::string p10 = b_.ask("P10");
     b_.link.command("$$$***");
-    b_.expect("I17 P10", "10|0");
+    b_.expect("I17 P10", "10|" + p10);
     b_.report.equal<std::string>("problems in ???", b_.problems(), "none");
   }
 

@@ -57,8 +57,9 @@ TEST_F(StatusOfMoves, RunningEndsWithTheCalculationOfTheLastMove) {
   EXPECT_EQ(host("B1"), "");
 }
 
-// Bit 14 of word 2, in segments and without.
+// Bit 14 of word 2, of a motor, in segments and without.
 TEST_F(StatusOfMoves, StopAtTheEndOfABlock) {
+  fit({"1000X"});
   for (const char* i5113 : {"0", "10"}) {
     store({"LINEAR INC TA20 TS0 TM300", "X1", "X1", "X1", "X1", "X1"});
     ASSERT_EQ(host(std::string("I5113=") + i5113 + " &1B1R"), "");
