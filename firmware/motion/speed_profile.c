@@ -97,7 +97,9 @@ static struct speed_plan plan_forward(const struct speed_limits* l, double from,
   if (from > 0.0) {
     const double stop = change_distance(l, from, 0.0);
     slice_pause();
-    if (from >= top || distance < stop + from * l->shortest) return stay_for(from, distance - stop);
+    const double kept = from * l->shortest;
+    slice_pause();
+    if (from >= top || distance < stop + kept) return stay_for(from, distance - stop);
   }
   return (struct speed_plan){peak_speed(l, from, distance), 0.0};
 }

@@ -30,17 +30,6 @@ static uint32_t* timer_began(uint32_t number) {
   return &timer_start[(number - I_CS_FIRST) / I_CS_BLOCK][number % I_CS_BLOCK - ISX11_TIMERS];
 }
 
-/* Iyy10 to Iyy39 are there while Iyy00 is 1. `offset` in the block of the motor, 0..31. */
-static bool is_of_extended_servo_off(uint32_t motor, uint32_t offset) {
-  return offset - IYY10_EXTENDED_SERVO_GAINS < IYY10_EXTENDED_SERVO_GAINS_COUNT &&
-         i_integers[i_esa(motor + 1u, IYY00_EXTENDED_SERVO)] == 0;
-}
-
-static bool reads_zero(uint32_t number) {
-  const uint32_t of_motors = number - I_ESA_FIRST;
-  return of_motors < I_ESA_BLOCK * MOTORS && is_of_extended_servo_off(of_motors / I_ESA_BLOCK, of_motors % I_ESA_BLOCK);
-}
-
 /* A timer is its written value less the servo interrupts since; it stops at the lowest 24-bit number. */
 static __attribute__((noinline)) int32_t timer_read(uint32_t number) {
   const uint32_t* began = timer_began(number);
@@ -54,7 +43,7 @@ static __attribute__((noinline)) int32_t timer_read(uint32_t number) {
 int32_t i_integer_of(uint32_t number) { return is_timer(number) ? timer_read(number) : i_integers[number]; }
 
 double i_variable_read(uint32_t number) {
-  if (number >= VARIABLE_COUNT || reads_zero(number)) return 0.0;
+  if (number >= VARIABLE_COUNT) return 0.0;
   if (is_timer(number)) return timer_read(number);
   const uint32_t state = hal_mask_real_time();
   const double value = value_of[number];
@@ -91,10 +80,21 @@ static bool is_refused(struct i_place place, const struct i_entry* entry, uint32
   return entry->field == I_FIELD_IC_CHANNEL && place.channel == 0u && place.offset == I7MN1_COMPARE_CHANNEL;
 }
 
+/* Iyy10 to Iyy39 take something while Iyy00 is 1, and are 0 from its end on. */
+static bool is_of_extended_servo_off(struct i_place place) {
+  return place.group == I_GROUP_ESA && place.offset - IYY10_EXTENDED_SERVO_GAINS < IYY10_EXTENDED_SERVO_GAINS_COUNT &&
+         i_integers[i_esa(place.instance + 1u, IYY00_EXTENDED_SERVO)] == 0;
+}
+
+static void clear_extended_servo(uint32_t motor) {
+  const uint32_t first = i_esa(motor + 1u, IYY00_EXTENDED_SERVO) + IYY10_EXTENDED_SERVO_GAINS;
+  for (uint32_t number = first; number < first + IYY10_EXTENDED_SERVO_GAINS_COUNT; ++number) store(number, 0.0);
+}
+
 /* Whether a write does anything now. */
 static bool is_open(struct i_place place, const struct i_entry* entry) {
   if (entry->kind == I_KIND_R || i_of_absent_ic(place)) return false;
-  if (place.group == I_GROUP_ESA && is_of_extended_servo_off(place.instance, place.offset)) return false;
+  if (is_of_extended_servo_off(place)) return false;
   return (i_table_lock(place.group) & (uint32_t)i_integers[I41_VARIABLE_LOCK]) == 0u;
 }
 
@@ -127,6 +127,8 @@ void i_variable_write(uint32_t number, double value) {
   else
     store(number, taken);
   share(entry, taken);
+  if (place.group == I_GROUP_ESA && place.offset == IYY00_EXTENDED_SERVO && taken == 0.0)
+    clear_extended_servo(place.instance);
   i_hardware_write(place, entry, (uint32_t)i_integers[number]);
   hal_unmask(state);
   if (i_effects[entry->field] != 0) i_effects[entry->field](place.instance);

@@ -101,7 +101,7 @@ TEST_F(MotionImage, SplinePointsOfEightAxesAreInTimeOrAnError) {
     const double first = value("M1"), eighth = value("M2");
     accepted("B1R");
     const double began = board.now_ms();
-    while ((std::stoul(board.send("??\r").substr(0, 6), nullptr, 16) & 1u) != 0) board.run_ms(1);
+    while (board.send("B1\r") != "\x06") board.run_ms(1);  // ERR001 until its last move has ended
     const double took = board.now_ms() - began;
     EXPECT_EQ(value("RY$2014"), time == 3 ? 0 : 9);
     if (time != 3) continue;
