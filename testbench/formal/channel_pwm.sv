@@ -80,9 +80,10 @@ module channel_pwm_rules (
   logic        turn_q;
   logic [7:0]  deadtime_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) {cnt_q, turn_q, deadtime_q} <= {17'd0, 1'b0, 8'd15};
-    else         {cnt_q, turn_q, deadtime_q} <= {cnt_i, turn_i, deadtime_i};
+    if (!rst_ni) cnt_q <= 17'd0;
+    else         cnt_q <= cnt_i;
   end
+  always_ff @(posedge clk_i) {turn_q, deadtime_q} <= {turn_i, deadtime_i};
 
   // The command in use, and what it was against the triangle one and two clocks ago.
   logic signed [15:0] command_q;

@@ -70,7 +70,7 @@ class KinematicsImage : public ::testing::Test {
   }
   bool running(int count) {
     for (int cs = 1; cs <= count; ++cs)
-      if ((std::stoul(board.send("&" + text(cs) + "??\r").substr(0, 6), nullptr, 16) & 1u) != 0) return true;
+      if (board.send("&" + text(cs) + "B1\r") != "\x06") return true;  // ERR001 until its last move has ended
     return false;
   }
 
@@ -128,8 +128,7 @@ TEST_F(KinematicsImage, ARunawayEnds) {
     EXPECT_EQ(value("RY$2014"), 12);
     EXPECT_EQ(value("RY$2114"), 0);
   }
-  for (int i = 0; i < 100 && (std::stoul(board.send("&2??\r").substr(0, 6), nullptr, 16) & 1u) != 0; ++i)
-    board.run_ms(20);
+  for (int i = 0; i < 100 && board.send("&2B2\r") != "\x06"; ++i) board.run_ms(20);
   EXPECT_EQ(value("RY$2114"), 0);
   EXPECT_EQ(value("P7"), 30);
   accepted("M1->D:$208");
