@@ -154,9 +154,10 @@ void PathHost::report_end(const System& s, const MotorPoint& way) {
   for (std::size_t m = 0; m < way.size(); ++m)
     compared.equal(fmt::format("motor {}: way in units of 1/3072 count", s.motors[m]), std::llround(end[m] * kUnits),
                    std::llround(way[m] * kUnits));
+  // To the unit, as above: the way of an arc is a sum of doubles.
   const auto off = [&](std::size_t m) {
     const auto& all = samples(s.motors[m]);
-    return all.back().actual - all.front().commanded - way[m];
+    return std::round((all.back().actual - all.front().commanded - way[m]) * kUnits) / kUnits;
   };
   for (std::size_t m = 0; m < way.size(); ++m) {
     for (double waited = 0; std::fabs(off(m)) > kInPosition && waited < kComesToRest; waited += 0.5) wait_ms(0.5);
