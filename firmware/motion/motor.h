@@ -54,8 +54,7 @@ struct motor {
   int32_t desired_step; /* net desired position, less that of the last servo interrupt: 0 is "desired velocity zero" */
   int32_t velocity;     /* X:+$1D, raw velocity */
   int64_t matched;      /* R: what it had followed when axes were matched with motors, and has not taken them along */
-  int64_t
-      of_system; /* where its coordinate system has it; R when a program takes it, then S (motion/system_motors.h) */
+  int64_t of_system;    /* where its coordinate system has it; by R, then S (motion/system_motors.h) */
   /* outputs, S */
   int32_t open_output; /* C: of a loop that is open, output */
   int32_t output;      /* what the loop commands, before bias and commutation: output */
