@@ -162,9 +162,10 @@ class Image:
         return dataclasses.replace(verdict, seconds=seconds)
 
     def again(self, mutant, source, tests):
-        """What `tests` say of the image as it is, and of the mutant's; None: its file is in no image now."""
+        """What `tests` say of the mutant's image; None: its file is in no image now, or there is no such test."""
         if not self.has(mutant.file):
             return None
         self.make_zero(mutant.file, source)
         with self.made(str(mutant.number), mutant.file, schemata.single(source, mutant)) as image:
-            return [self.run(tests, one, ZERO_LIMIT) for one in (self.tree / IMAGE, image)]
+            return runner.again(lambda some, number: self.run(some, image if number else self.tree / IMAGE,
+                                                              ZERO_LIMIT), tests, mutant.number)

@@ -199,20 +199,13 @@ class Judge:
         name, _, test = by.partition(": ")
         tests = Tests(name, test)
         if name in [of_image.program for of_image in self.module.image]:
-            verdicts = self.image.again(mutant, self.sources[mutant.file], tests)
-            if verdicts is None:
-                return None
-        elif name in self.programs:
-            if name not in self.built:
-                self.built[name] = self.program(name)
-            verdicts = [self.run(self.built[name], tests, n, ZERO_LIMIT, self.kind.compare) for n in (0, mutant.number)]
-        else:
+            return self.image.again(mutant, self.sources[mutant.file], tests)
+        if name not in self.programs:
             return None
-        if verdicts[0].by.endswith(runner.no_test(tests)):
-            return None
-        if verdicts[0].status != ALIVE:
-            raise runner.BadBuild(f"number 0, the folder as it is, does not pass: {verdicts[0].by}")
-        return verdicts[1]
+        if name not in self.built:
+            self.built[name] = self.program(name)
+        return runner.again(lambda some, number: self.run(self.built[name], some, number, ZERO_LIMIT,
+                                                          self.kind.compare), tests, mutant.number)
 
     def by_filter(self, mutant):
         """Equal: the object code is, of all that reads the file."""

@@ -17,7 +17,7 @@ from mutant import mutants_of
 from runner import ALIVE, EQUAL, KILLED, BadBuild, Verdict
 
 FOLDER = pathlib.Path(__file__).parent
-FILTER_LIMIT, PROOF_LIMIT, ZERO_LIMIT = 20, 120, 600  # s
+FILTER_LIMIT, PROOF_LIMIT, ZERO_LIMIT, AGAIN_LIMIT = 20, 120, 600, 60  # s
 
 
 @dataclasses.dataclass
@@ -45,7 +45,7 @@ class Judge:
         self.stages = [Stage("tests", module.opinion, False, "off"), Stage("board", module.board, True, "off"),
                        Stage("slip", module.slip, True, "on")]
         self.binaries, self.filters, self.limits, self.build_seconds = {}, {}, {}, 0.0
-        self.built, self.lock = set(), threading.Lock()
+        self.lock = threading.Lock()
 
     def inputs(self):
         """A hash of all that decides: the mutated file, the programs as built, the proof, these tools."""
@@ -61,28 +61,28 @@ class Judge:
         mutated.parent.mkdir(parents=True, exist_ok=True)
         mutated.write_bytes(schemata.write(self.source, chosen, schemata.Verilog()))
 
-    def build(self, stage):
-        """Its programs, once, when the first mutant comes to it; number 0 passes in each."""
+    def build(self, stage, tests):
+        """Their program, when the first mutant comes to it; number 0 passes."""
         with self.lock:
-            if stage.name in self.built:
+            if (stage.name, tests) in self.limits:
                 return
-            begin, folder = time.monotonic(), self.out / ("board" if stage.boards else "module")
-            folder.mkdir(parents=True, exist_ok=True)
-            replaced = {self.root / self.module.file: self.out / self.module.file}
-            for tests in stage.tests:
-                key = (tests.program, stage.boards)
-                if key not in self.binaries:
-                    program = overlay.Program(self.tree, tests.program)
-                    one = overlay.Overlay(self.tree, folder, replaced, ["-O1"])
-                    self.binaries[key] = one.build(program, stage.boards)
-                self.pass_zero(stage, tests)
-            self.built.add(stage.name)
+            begin = time.monotonic()
+            self.pass_zero(stage, tests, self.binary(stage, tests.program))
             self.build_seconds += time.monotonic() - begin
 
-    def pass_zero(self, stage, tests):
+    def binary(self, stage, name):
+        """The program with the mutants in it."""
+        key, folder = (name, stage.boards), self.out / ("board" if stage.boards else "module")
+        if key not in self.binaries:
+            folder.mkdir(parents=True, exist_ok=True)
+            replaced = {self.root / self.module.file: self.out / self.module.file}
+            one = overlay.Overlay(self.tree, folder, replaced, ["-O1"])
+            self.binaries[key] = one.build(overlay.Program(self.tree, name), stage.boards)
+        return self.binaries[key]
+
+    def pass_zero(self, stage, tests, binary):
         """Number 0, the module as it is, passes. What it fails when nothing is compared is a control of the
         comparison, and judges nobody."""
-        binary = self.binaries[(tests.program, stage.boards)]
         verdict = runner.run(binary, tests, 0, ZERO_LIMIT, "on", self.root)
         if verdict.status != ALIVE:
             raise BadBuild(f"number 0, the module as it is, does not pass: {verdict.by}")
@@ -100,9 +100,9 @@ class Judge:
         return runner.confirmed(one, self.filters.get(key, tests))
 
     def by_tests(self, stage, mutant):
-        self.build(stage)
         seconds, verdict = 0.0, Verdict(ALIVE, "", 0.0)
         for tests in stage.tests:
+            self.build(stage, tests)
             verdict = self.run(stage, tests, mutant.number)
             seconds += verdict.seconds
             if verdict.status != ALIVE:
@@ -131,8 +131,21 @@ class Judge:
         return Verdict(KILLED, f"proof {self.module.proof}: {rule}", seconds) if rule else Verdict(ALIVE, "", seconds)
 
     def again(self, mutant, by):
-        """`by`: what killed it. All are built and pass at number 0, so all may kill it."""
-        return self.by_tests(self.stages[0], mutant)
+        """`by`: 'PROGRAM: TEST', which passes with number 0; no other program is built unless it lets the mutant live.
+        None: there is no such test now."""
+        stage, (name, _, test) = self.stages[0], by.partition(": ")
+        if name not in [tests.program for tests in stage.tests]:
+            return None
+
+        def run(tests, number):
+            return runner.run(self.binary(stage, tests.program), tests, number, AGAIN_LIMIT, stage.compare, self.root)
+
+        verdict = runner.again(run, runner.Tests(name, test), mutant.number)
+        for tests in stage.tests:
+            if verdict is None or verdict.status != ALIVE:
+                break
+            verdict = runner.by_any(run, tests, mutant.number)
+        return verdict
 
     def judge(self, mutant, _first=""):
         """(stage, verdict): of the first that does not leave it alive. What lock-step alone kills has stage 'slip' and

@@ -63,6 +63,32 @@ def confirmed(run, tests):
         return dataclasses.replace(verdict, seconds=seconds)
 
 
+def again(run, tests, number):
+    """What `tests`, which number 0 passes, say of mutant `number`, by `run`(tests, number); None: there are no such
+    tests now."""
+    zero = run(tests, 0)
+    if zero.by.endswith(no_test(tests)):
+        return None
+    if zero.status != ALIVE:
+        raise BadBuild(f"number 0, the source as it is, does not pass: {zero.by}")
+    return run(tests, number)
+
+
+def by_any(run, tests, number):
+    """What `run`(tests, number) says of mutant `number`, by the first of `tests` that it fails alone, and number 0 does
+    not."""
+    passed_by = ()
+    while True:
+        verdict = run(tests.without(passed_by), number)
+        if verdict.status == ALIVE or not verdict.begun:  # none is left, or none fails
+            return Verdict(ALIVE, "", 0.0)
+        one = dataclasses.replace(tests, filter=verdict.begun[-1])
+        alone = run(one, number)
+        if alone.status != ALIVE and run(one, 0).status == ALIVE:
+            return alone
+        passed_by += (one.filter,)
+
+
 def run(binary, tests, number, limit, compare, folder, **more):
     """`compare`: what rigs with both engines do, see testbench/unit/rtl/comparison.h. `more`: of the environment.
     `limit`: seconds of the processor, so that what else runs on the machine decides nothing."""
