@@ -214,6 +214,34 @@ TYPED_TEST(ServoIcOn, ResetStopsDrivingAndRestoresTheRegisters) {
   EXPECT_EQ(this->rig.read(true, kPwmWord), 0x197F0Fu);
 }
 
+// Whatever tick of the triangle and of the dividers it comes at: the clocks come up as behind the first one.
+TYPED_TEST(ServoIcOn, ResetLeavesNothingOfTheClocksOfBefore) {
+  constexpr Tick kWay = 2 * 20 + 3, kServo = kWay * 4 * 2;
+  const auto edges = [this] {
+    this->rig.reset(false);
+    const Tick begin = this->rig.now();
+    this->drive(20, 3, 1);
+    std::vector<Tick> found;
+    for (const bool rising : {true, false, true, false})
+      found.push_back(this->rig.edge_of(&ServoIcRig::phase, rising, 200'000) - begin);
+    for (const bool rising : {false, true})
+      found.push_back(this->rig.edge_of(&ServoIcRig::servo, rising, 200'000) - begin);
+    return found;
+  };
+  const auto reset = [this] {  // ends with an edge of clk_ref, all begin alike there
+    this->rig.reset(true);
+    do this->rig.tick();
+    while (this->rig.now() % kTicksPerRef != 0);
+  };
+  reset();
+  const std::vector<Tick> first = edges();
+  for (Tick at = 0; at < kServo; at += 5) {  // 5 and 43 have no divisor in common: every tick of a way is hit
+    this->rig.run(at);
+    reset();
+    EXPECT_EQ(edges(), first) << at << " ticks behind a rise of SERVO";
+  }
+}
+
 // A pin with a pull-up, whatever the direction: taken with a full high time and left after a full low time, whichever
 // tick the direction bits are written at.
 TYPED_TEST(ServoIcOn, DirectionChangesWithoutAShortPulse) {
