@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Proves the rules of testbench/formal/NAME.sv: prove.py [NAME...] [--out DIR] [--limit SECONDS] [--quick].
+"""Proves the rules of testbench/formal/NAME.sv: prove.py [NAME...] [--out DIR] [--limit SECONDS] [--quick]
+[--only rules|faults].
 
 A file holds the module NAME_rules: the design under test, assumptions, and numbered rules in English, each above its
 assert, each with a cover of its premise. Its header says how, in comment lines:
@@ -210,22 +211,25 @@ def prove(rules, solvers):
     return how
 
 
-def judge(root, name, solvers, quick):
-    """Proves one file and prints its verdicts."""
-    rules = Rules(root, name)
+def judge_rules(rules, solvers):
+    """Proves them, reaches their premises, and prints the verdicts."""
     build(rules, solvers)
     how = prove(rules, solvers)
     steps = reached(rules, solvers)
     for label, english in rules.english.items():
         premise = f"; premise at step {steps['C' + label[1:]]}" if label in rules.rules else ""
-        print(f"{name} {label} proved ({how[label]}{premise}): {english}")
+        print(f"{rules.name} {label} proved ({how[label]}{premise}): {english}")
+
+
+def judge_faults(rules, solvers, quick):
+    """Each is refuted; prints where, and with which waveform."""
     for fault in rules.faults:
         stem = build(rules, solvers, fault)
         step = solvers.search(stem, fault.rule, rules.steps)
         if step is None:
             raise Failed(f"{rules.path}: with '{fault.what}' {fault.rule} still holds for {rules.steps} steps")
         shown = "" if quick else f": {solvers.trace(stem, fault.rule)}"
-        print(f"{name} {fault.rule} refuted at step {step} with '{fault.what}'{shown}")
+        print(f"{rules.name} {fault.rule} refuted at step {step} with '{fault.what}'{shown}")
 
 
 def main():
@@ -234,6 +238,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/formal", help="folder of models and traces")
     parser.add_argument("--limit", type=float, default=300, help="seconds that a solver may take")
     parser.add_argument("--quick", action="store_true", help="no waveforms of planted faults")
+    parser.add_argument("--only", choices=("rules", "faults"), help="rules and premises, or planted faults")
     parser.add_argument("--root", type=pathlib.Path, default=ROOT)
     options = parser.parse_args()
     for program in ("yosys", "yosys-abc", "yosys-smtbmc", "z3"):
@@ -245,7 +250,11 @@ def main():
     problems = []
     for name in options.names or sorted(f.stem for f in (options.root / FOLDER).glob("*.sv")):
         try:
-            judge(options.root.resolve(), name, solvers, options.quick)
+            rules = Rules(options.root.resolve(), name)
+            if options.only != "faults":
+                judge_rules(rules, solvers)
+            if options.only != "rules":
+                judge_faults(rules, solvers, options.quick)
         except Failed as failed:
             problems.append(str(failed))
     finish("proofs", problems)

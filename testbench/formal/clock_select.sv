@@ -3,7 +3,7 @@
 // clk_pwm; every input may change at any. Nothing is assumed but that a run has one reset, at its start. R9 and R10 are
 // about ICs that take turns, one at a time and high from a change of direction to the next edge of clk_ref, as rules R7
 // to R9 of `clock_gen` have it.
-// proof: induction 6
+// proof: induction 5
 // clocks: several
 // steps: 24
 // fault R1: each IC that drives is let onto the net (rtl/board/clock_select.sv)
