@@ -210,6 +210,13 @@ static inline bool move_continues(const struct coordinate_system* s) {
   return s->active && next->joins && m->kind == next->kind;
 }
 
+/* The calculated move that waits for its start, 0: none. Its place is read first: where S starts it in between, it is
+ * none, not the one that has been executed. */
+static inline const struct move* cs_next_move(const struct coordinate_system* s) {
+  const struct move* next = &s->moves[s->executing ^ 1u];
+  return s->next_valid ? next : 0;
+}
+
 /* Something but a DWELL is under way or waits. */
 static inline bool cs_moves(const struct coordinate_system* s) {
   const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];

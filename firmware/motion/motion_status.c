@@ -74,8 +74,8 @@ static uint32_t status1(const struct coordinate_system* s) {
 }
 
 static bool has_dwell(const struct coordinate_system* s) {
-  return (s->active && s->moves[s->executing].kind == MOVE_DWELL) ||
-         (s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_DWELL);
+  const struct move* next = cs_next_move(s);
+  return (next != 0 && next->kind == MOVE_DWELL) || (s->active && s->moves[s->executing].kind == MOVE_DWELL);
 }
 
 /* Nothing of a program is under way or waits, and motors, if there are any, are where they shall be. */

@@ -26,7 +26,8 @@ bool segment_gives_way(uint32_t cs) {
 /* What executes or stands is of the sequence that is made, no move before it. */
 static bool has_begun(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  const bool waits = s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_SEGMENTS;
+  const struct move* next = cs_next_move(s);
+  const bool waits = next != 0 && next->kind == MOVE_SEGMENTS;
   return sequences[cs].handed ? !waits : !s->active;
 }
 
@@ -163,7 +164,8 @@ static bool work_ahead(uint32_t cs, bool alone) {
 /* The servo task has executed the sequence that was looked ahead: it stands. */
 static __attribute__((noinline)) void end_look(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  const bool waits = !s->active && s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_SEGMENTS;
+  const struct move* next = cs_next_move(s);
+  const bool waits = !s->active && next != 0 && next->kind == MOVE_SEGMENTS;
   if (waits || (s->active && s->moves[s->executing].kind == MOVE_SEGMENTS)) return;
   sequences[cs].looks = false;
   show(cs, 0);

@@ -150,7 +150,8 @@ static bool is_last(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const struct sequence* q = &sequences[cs];
   if (q->closed || q->stops || q->joined < paths[cs].count) return true;
-  return q->handed && s->next_valid && s->moves[s->executing ^ 1u].kind != MOVE_SEGMENTS;
+  const struct move* next = cs_next_move(s);
+  return q->handed && next != 0 && next->kind != MOVE_SEGMENTS;
 }
 
 enum decision { GOES_ON, ENDS, WAITS };

@@ -88,8 +88,9 @@ static bool waits_for(enum move_kind kind) { return kind == MOVE_DWELL || kind =
 
 /* The last calculated move is a PVT that does not end at rest: it needs one behind it. */
 static bool needs_next(const struct coordinate_system* s) {
-  const struct move* m = &s->moves[s->next_valid ? s->executing ^ 1u : s->executing];
-  return (s->next_valid || s->active) && m->kind == MOVE_PVT && m->overruns;
+  const struct move* next = cs_next_move(s);
+  const struct move* m = next != 0 ? next : &s->moves[s->executing];
+  return (next != 0 || s->active) && m->kind == MOVE_PVT && m->overruns;
 }
 
 /* What has to wait for a later interrupt: a move to be started, or the limits of this one. */

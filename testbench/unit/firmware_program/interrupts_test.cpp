@@ -8,6 +8,8 @@
 #include "testbench/unit/firmware_program/platform.h"
 
 extern "C" {
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/motion_status.h"
 #include "firmware/motion/motor.h"
 #include "firmware/variables/words.h"
 #include "testbench/unit/firmware_program/published.h"
@@ -414,6 +416,42 @@ TEST_F(Interrupts, AMoveThatIsHeldBackNeverStartsBehindB) {
   }
   EXPECT_GT(servo, kSeeds);
   EXPECT_GT(real_time, kSeeds / 4);
+}
+
+// The servo task starts the move that waits, as it does at the end of the one before.
+void start_waiting(fake_task task) {
+  struct coordinate_system& s = coordinate_systems[15];
+  if (task != FAKE_SERVO || !s.next_valid) return;
+  s.executing = s.executing ^ 1u;
+  s.next_valid = false;
+  ++looks;
+}
+
+// What starts in the middle of a look at it is not taken for the one that was executed before: a sequence of segments
+// ended at such a moment, and its moves did not blend.
+TEST_F(Interrupts, AMoveThatStartsWhileItIsLookedAtIsNotTheOneBefore) {
+  struct coordinate_system& s = coordinate_systems[15];
+  s.moves[0].kind = MOVE_LINEAR;
+  s.moves[1].kind = MOVE_DWELL;
+  const auto status = [&s] {
+    s.executing = 1;
+    s.next_valid = true;
+    return motion_cs_status(15, 1);
+  };
+  const std::uint32_t waits = status();
+  s.moves[0].kind = MOVE_DWELL;
+  const std::uint32_t dwell = waits ^ status();
+  ASSERT_NE(dwell, 0u) << "a DWELL that waits is seen";
+  s.moves[0].kind = MOVE_LINEAR;
+  looks = 0;
+  fake_interrupts_begin(1, 10);
+  fake_interrupts_on_take(start_waiting);
+  unsigned of_before = 0;
+  for (int i = 0; i < 500; ++i) of_before += ((status() ^ waits) & dwell) != 0 ? 1u : 0u;
+  fake_interrupts_end();
+  EXPECT_EQ(of_before, 0u);
+  EXPECT_GT(looks, kLooks);
+  s.next_valid = false;
 }
 
 }  // namespace
