@@ -100,7 +100,7 @@ TEST_P(RotaryProgram, ReplyOfPrNeedsARotaryBuffer) {
   EXPECT_EQ(ask("&3PR").substr(0, 3), "ERR");
 }
 
-BRICK_ON_ENGINES(RotaryProgram, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
+BRICK_ON_ENGINES(RotaryProgram, at_night(Engine::kRtl), Engine::kSystemC, Engine::kLockstep);
 
 }  // namespace
 }  // namespace brick
