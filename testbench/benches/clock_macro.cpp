@@ -12,7 +12,7 @@
 namespace brick {
 namespace {
 
-constexpr ClockSetting kExample{8846, 0, 1};  // 117964.8 / (2 x 8846 + 3) = 6.6665 kHz, I6802 = 6.67 / 3.33 - 1 = 1
+constexpr ClockSetting kExample{8846, 0, 1};  // 117964.8 / (2 x 8846 + 3) = 6.6666 kHz, I6802 = 6.67 / 3.33 - 1 = 1
 
 // Entries into the interrupt tasks, as cpu.task shows them (3 phase, 2 servo, 1 real-time).
 class TaskEntries {
