@@ -240,7 +240,7 @@ void ControlSession::drive(const std::string& name, std::optional<bool> level) {
   };
   if ((machine.driven_motor_inputs(place.ic, place.channel) & bit) == 0) {
     std::uint16_t& pins = machine.motor_inputs()[place.ic].pins[place.channel];
-    pins = with(pins, level.value_or((kIdleChannelPins & bit) != 0));
+    pins = with(pins, level.value_or((machine.idle_channel_pins() & bit) != 0));
     return machine.apply_motor_inputs();
   }
   plant::Plant& plant = *simulation_.plant();

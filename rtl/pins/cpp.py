@@ -149,7 +149,7 @@ def write_motor_pins(servo, notice):
                 "constexpr std::array<std::string_view, kChannelPins> kChannelPinNames{")
     yield from listed(f'"{pin.name}"' for pin in flags)
     yield from ("};", "// Nothing connected: these are pulled up, the others show 0 (servo-ic:5.15/6).",
-                f"constexpr std::uint16_t kIdleChannelPins = {idle};",
+                "constexpr std::uint16_t kIdleChannelPins =", f"    {idle};",
                 "// motor_i of the RTL: channel n has its pins from kMotorPinsLsb + n * kMotorPinsStep on, ADCs at",
                 "// kMotorAdcALsb + n, kMotorAdcBLsb + n.",
                 f"constexpr unsigned kMotorPinsLsb = {flags[0].motor[0]}, kMotorPinsStep = {flags[0].motor[1]};",

@@ -14,7 +14,7 @@ enum ChannelPin : unsigned {
   kEncA = 0,  // encoder A, or pulse and direction (servo-ic:5.4)
   kEncB = 1,  // encoder B; pulled up (servo-ic:5.4)
   kEncC = 2,  // encoder index (servo-ic:5.8)
-  kFault = 3,  // fault of the amplifier (servo-ic:5.15)
+  kFault = 3,  // fault of the amplifier; pulled up (servo-ic:5.15)
   kHmfl = 4,  // home flag (servo-ic:5.15)
   kPlim = 5,  // positive end switch (servo-ic:5.15)
   kMlim = 6,  // negative end switch (servo-ic:5.15)
@@ -29,7 +29,8 @@ constexpr std::array<std::string_view, kChannelPins> kChannelPinNames{
     "enc_a", "enc_b", "enc_c", "fault", "hmfl", "plim", "mlim", "user", "w", "v", "u", "t"
 };
 // Nothing connected: these are pulled up, the others show 0 (servo-ic:5.15/6).
-constexpr std::uint16_t kIdleChannelPins = 1u << kT | 1u << kU | 1u << kV | 1u << kW | 1u << kUser | 1u << kEncB;
+constexpr std::uint16_t kIdleChannelPins =
+    1u << kT | 1u << kU | 1u << kV | 1u << kW | 1u << kUser | 1u << kFault | 1u << kEncB;
 // motor_i of the RTL: channel n has its pins from kMotorPinsLsb + n * kMotorPinsStep on, ADCs at
 // kMotorAdcALsb + n, kMotorAdcBLsb + n.
 constexpr unsigned kMotorPinsLsb = 0, kMotorPinsStep = 12;

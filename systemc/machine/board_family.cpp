@@ -17,15 +17,16 @@ constexpr std::uint32_t kServo01 = 0x3, kServo0To9 = 0x3FF, kRack = 0x3FFFC, kMa
 
 constexpr BoardFamily kFamilies[] = {
     {"geo-brick-lv", kServo01 | kMacro0, "servo ICs 0, 1 and MACRO IC 0", false, false, kSsiGeoBrick, 0, "TURBO2",
-     false, false},
-    {"turbo-pmac2", kServo0To9 | kMacro0, "servo ICs 0 to 9 and MACRO IC 0", false, false, 0, 0, "TURBO2", false,
+     false, false, true},
+    {"turbo-pmac2", kServo0To9 | kMacro0, "servo ICs 0 to 9 and MACRO IC 0", false, false, 0, 0, "TURBO2", false, false,
      false},
-    {"turbo-pmac2-ultralite", kMacros, "MACRO ICs 0 to 3", false, false, 0, kProductUltralite, "TURBOU", true, false},
+    {"turbo-pmac2-ultralite", kMacros, "MACRO ICs 0 to 3", false, false, 0, kProductUltralite, "TURBOU", true, false,
+     false},
     {"umac-turbo", kRack | kMacros, "servo ICs 2 to 9, 2* to 9* and MACRO ICs 0 to 3", false, false, 0, kProductUmac,
-     "TURBO2", true, false},
-    {"turbo-pmac", kServo0To9, "servo ICs 0 to 9", true, false, 0, kProductTurboPmac1, "TURBO1", false, true},
-    {"geo-pmac", 0x1, "servo IC 0", false, true, kSsiGeoPmac, kProductGeoPmac, "TURBO2", false, false},
-    {"any", kServo0To9 | kRack | kMacros, "every IC", true, false, kSsiGeoBrick, 0, "TURBO2", true, true},
+     "TURBO2", true, false, false},
+    {"turbo-pmac", kServo0To9, "servo ICs 0 to 9", true, false, 0, kProductTurboPmac1, "TURBO1", false, true, false},
+    {"geo-pmac", 0x1, "servo IC 0", false, true, kSsiGeoPmac, kProductGeoPmac, "TURBO2", false, false, true},
+    {"any", kServo0To9 | kRack | kMacros, "every IC", true, false, kSsiGeoBrick, 0, "TURBO2", true, true, false},
 };
 
 std::string ic_number(unsigned ic) {

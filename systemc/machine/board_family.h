@@ -21,6 +21,7 @@ struct BoardFamily {
   std::string_view type;   // answer to TYPE, up to the comma
   bool control_outputs;    // interrupt lines can come from CTRL0, CTRL1
   bool outside_lines;      // ... from MI1, MI2 of JOPTO and AXEXP0, AXEXP1 of an axis expansion board
+  bool amplifiers;         // are built in
 };
 
 // Word 5 of the straps page (docs/architecture.md).

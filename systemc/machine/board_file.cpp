@@ -95,6 +95,7 @@ class Reader {
 
   void read_options(BoardConfig& board) const {
     board.product = family_->product;
+    board.amplifiers = family_->amplifiers;
     board.jpan = file_.flag("jpan");
     if (board.jpan && !family_->jpan)
       file_.fail(file_.need("jpan"), "jpan", fmt::format("false: a {} has no control panel port", family_->name));

@@ -105,7 +105,7 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
       jumper_e3(config.jumper_e3),
       owner(machine),
       board(wired(config, make_board(config))),
-      motors(*board, signals, config.board.fitted),
+      motors(*board, signals, config.board.fitted, brick::idle_channel_pins(config.board)),
       aperture(config.aperture, config.seed),
       memory(cpu, config.flash_file, has_ssi_page(config.board)) {
   initiator.cpu = &cpu;
@@ -300,6 +300,7 @@ MotorInputPins& Machine::motor_inputs() { return impl_->motors.inputs(); }
 std::uint16_t Machine::driven_motor_inputs(unsigned ic, unsigned channel) const {
   return impl_->motors.driven(ic, channel);
 }
+std::uint16_t Machine::idle_channel_pins() const { return impl_->motors.idle_pins(); }
 void Machine::apply_motor_inputs() { impl_->motors.apply(); }
 MotorOutputs Machine::motor_outputs(unsigned ic) const { return impl_->board->motor_outputs(ic); }
 void Machine::stop_on_motor(unsigned ic, const MotorOutputs& select) { impl_->motors.stop_on(ic, select); }

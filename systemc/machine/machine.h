@@ -47,9 +47,15 @@ struct BoardConfig {
   bool slot8 = false;              // in a slot of eight bits
   unsigned axes = 8;
   bool feedback_option_2 = false;
+  bool amplifiers = true;          // built in: they hold FAULT low
   std::uint8_t ssi_kind = 2;       // as Straps::ssi_kind: kSsiGeoPmac, kSsiGeoBrick of board_family.h
   std::vector<std::string> notes;  // what differs from the product, for the user
 };
+
+// The input pins of a channel where nothing is connected, bits as ChannelPin (servo-ic:5.15/6).
+constexpr std::uint16_t idle_channel_pins(const BoardConfig& board) {
+  return static_cast<std::uint16_t>(kIdleChannelPins & ~(board.amplifiers ? 1u << kFault : 0u));
+}
 
 struct MachineConfig {
   Engine engine = Engine::kSystemC;
@@ -116,6 +122,7 @@ class Machine : public sc_core::sc_module {
   MotorInputPins& motor_inputs();
   void apply_motor_inputs();
   std::uint16_t driven_motor_inputs(unsigned ic, unsigned channel) const;  // by peers, bits as ChannelPin
+  std::uint16_t idle_channel_pins() const;  // of a channel where nothing is connected, bits as ChannelPin
   MotorOutputs motor_outputs(unsigned ic) const;
   void stop_on_motor(unsigned ic, const MotorOutputs& select);  // until called again; an empty selection ends it
   void attach(MotorPeer& peer);  // not owned; detach() it before it goes; told the outputs at once

@@ -6,10 +6,13 @@
 
 namespace brick {
 
-MotorSide::MotorSide(Board& board, Signals& signals, std::uint32_t fitted)
-    : board_(board), signals_(signals), fitted_(fitted & ((1u << kMaxServoIcs) - 1)) {
+MotorSide::MotorSide(Board& board, Signals& signals, std::uint32_t fitted, std::uint16_t idle_pins)
+    : board_(board), signals_(signals), fitted_(fitted & ((1u << kMaxServoIcs) - 1)), idle_(idle_pins) {
   place_.fill(-1);
-  const MotorInputs idle;
+  MotorInputs idle;
+  idle.pins.fill(idle_);
+  inputs_.fill(idle);
+  applied_ = inputs_;
   for (unsigned i = 0; i < kMaxServoIcs; ++i) {
     if ((fitted_ >> i & 1) == 0) continue;
     place_[i] = static_cast<int>(ics_.size());

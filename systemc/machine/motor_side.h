@@ -15,9 +15,11 @@ namespace brick {
 
 class MotorSide {
  public:
-  MotorSide(Board& board, Signals& signals, std::uint32_t fitted);
+  // `idle`: the input pins of a channel where nothing is connected, bits as ChannelPin
+  MotorSide(Board& board, Signals& signals, std::uint32_t fitted, std::uint16_t idle);
 
   MotorInputPins& inputs() { return inputs_; }
+  std::uint16_t idle_pins() const { return idle_; }
   void apply();
 
   void attach(MotorPeer& peer);
@@ -82,6 +84,7 @@ class MotorSide {
   Board& board_;
   Signals& signals_;
   std::uint32_t fitted_;
+  std::uint16_t idle_;
   std::vector<Ic> ics_;
   std::array<int, kMaxServoIcs> place_;  // in ics_, -1: not fitted
   std::vector<Peer> peers_;

@@ -52,8 +52,8 @@ bool PinPlayer::step(Tick now, MotorInputPins& inputs) {
 }
 
 ChannelHost::ChannelHost(BenchContext& b)
-    : ServoHost(b, b.seed * 65'537), player_(fitted()), pins_(channels(), kIdleChannelPins) {
-  for (unsigned i = 0; i < pins_.size(); ++i) boards_.push_back(std::make_unique<ChannelScoreboard>());
+    : ServoHost(b, b.seed * 65'537), player_(fitted()), pins_(channels(), b.machine.idle_channel_pins()) {
+  for (unsigned i = 0; i < pins_.size(); ++i) boards_.push_back(std::make_unique<ChannelScoreboard>(pins_[i]));
   b.machine.attach(player_);
   b.machine.on_bus_cycle = [this](const PortACycle& c) { cycle(c); };
   b.bus.watch(select_pins(pin::kServo), [this](Tick t, const BoardOutputs&, const BoardOutputs& o) {

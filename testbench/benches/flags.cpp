@@ -155,7 +155,7 @@ class FlagsBench {
   // A flag that triggers the capture: not by one sample, by two.
   void capture_spikes() {
     const unsigned n = host_.channels(), turn = host_.pick(4);
-    put(std::vector<std::uint16_t>(n, kIdleChannelPins & ~(1u << kUser)));
+    put(std::vector<std::uint16_t>(n, b_.machine.idle_channel_pins() & ~(1u << kUser)));
     std::vector<unsigned> codes(n), flags(n);
     for (unsigned i = 0; i < n; ++i) {
       codes[i] = i % 2 == 0 ? 2 : 10;

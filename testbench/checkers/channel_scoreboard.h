@@ -30,7 +30,9 @@ class ChannelScoreboard {
     bool operator==(const Change& o) const { return tick == o.tick && value == o.value; }
   };
 
-  ChannelScoreboard() = default;
+  // `idle`: the pins before the first drive()
+  explicit ChannelScoreboard(std::uint16_t idle = kIdleChannelPins)
+      : decoder{idle}, capture{idle}, filter{idle}, pins_(idle) {}
 
   // Earliest and latest tick of a count whose pin changed at `tick`, before SCLK is known.
   static Tick earliest(Tick tick, Tick period) { return tick + kSync + kDecode * period; }
@@ -47,10 +49,10 @@ class ChannelScoreboard {
   }                         // leading edge of the channel's own PFM pulse
   void advance(Tick tick);  // all SCLK edges up to `tick`
 
-  Quadrature decoder{kIdleChannelPins};
-  Capture capture{kIdleChannelPins};
+  Quadrature decoder;
+  Capture capture;
   Compare compare;
-  SclkFilter filter{kIdleChannelPins};
+  SclkFilter filter;
   std::function<void(Tick, std::uint32_t from, int)> on_count;  // compares of other channels that follow this one
   bool own_compare = true;                                      // I7mn1 = 0
   void follow(Tick tick, std::uint32_t from, int direction);    // a count of the source that compare follows
@@ -77,7 +79,7 @@ class ChannelScoreboard {
   std::int64_t index(Tick tick) const;
   void edge(std::int64_t k);
 
-  std::uint16_t pins_ = kIdleChannelPins;
+  std::uint16_t pins_;
   std::deque<Driven> driven_;
   std::deque<Pulse> pulses_;
   Tick phase_ = 0, period_ = 12;

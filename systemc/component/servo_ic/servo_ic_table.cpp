@@ -22,7 +22,7 @@ const std::vector<MotorRow>& channel_rows() {
       {{"enc_a", PinDirection::kIn, 0, 0, 1, 0x0, "servo-ic:5.4", "encoder A, or pulse and direction"}, 1, 0},
       {{"enc_b", PinDirection::kIn, 0, 1, 1, 0x1, "servo-ic:5.4", "encoder B; pulled up"}, 1, 0},
       {{"enc_c", PinDirection::kIn, 0, 2, 1, 0x0, "servo-ic:5.8", "encoder index"}, 1, 0},
-      {{"fault", PinDirection::kIn, 0, 3, 1, 0x0, "servo-ic:5.15", "fault of the amplifier"}, 1, 0},
+      {{"fault", PinDirection::kIn, 0, 3, 1, 0x1, "servo-ic:5.15", "fault of the amplifier; pulled up"}, 1, 0},
       {{"hmfl", PinDirection::kIn, 0, 4, 1, 0x0, "servo-ic:5.15", "home flag"}, 1, 0},
       {{"plim", PinDirection::kIn, 0, 5, 1, 0x0, "servo-ic:5.15", "positive end switch"}, 1, 0},
       {{"mlim", PinDirection::kIn, 0, 6, 1, 0x0, "servo-ic:5.15", "negative end switch"}, 1, 0},

@@ -168,6 +168,14 @@ TEST(BoardFile, SerialEncoderInputsAreThoseOfTheFamily) {
   EXPECT_EQ(kind("turbo-pmac2"), 0);
 }
 
+TEST(BoardFile, AmplifiersOfABrickAndOfAGeoPmacHoldFaultLow) {
+  for (const auto& entry : std::filesystem::directory_iterator("boards")) {
+    const std::string name = entry.path().stem();
+    const bool low = name.rfind("geo", 0) == 0;
+    EXPECT_EQ(idle_channel_pins(read_board_file(tree(name))), low ? 0xF82 & ~8 : 0xF82 | 8) << name;
+  }
+}
+
 // Every file of the folder can be read and its ICs can make the clocks.
 TEST(BoardFile, EveryFileOfTheTreeIsGood) {
   unsigned files = 0;

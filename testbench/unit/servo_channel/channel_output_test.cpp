@@ -459,7 +459,7 @@ TEST(ChannelReset, OpenInputsReadAsTheirPullUps) {
   rig.reset();
   rig.in.pins.fill(kIdleChannelPins);
   rig.ticks(200);
-  EXPECT_EQ(rig.peek(1, words::kStatus) & 0xFFF000, 0xF82000u);
+  EXPECT_EQ(rig.peek(1, words::kStatus) & 0xFFF000, 0xF8A000u);
   EXPECT_EQ(rig.difference, "");
 }
 

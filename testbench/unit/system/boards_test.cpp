@@ -39,6 +39,8 @@ class Boards : public Controller {
   std::uint64_t signal(const char* name) { return machine().signals().value(*machine().signals().find(name)); }
 };
 
+class OpenInputs : public Boards {};
+
 TEST_P(Boards, EachBoardStartsAndHasTheRightClockSource) {
   BRICK_COVERS("I19-1 I19-2 I19-3");
   for (const Expected& e : kExpected) {
@@ -60,7 +62,27 @@ TEST_P(Boards, EachBoardStartsAndHasTheRightClockSource) {
   }
 }
 
+// servo-ic:5.15/6: FAULT is open where no amplifier is built in, and with the factory's Ixx24 an open input is no
+// fault; the healthy amplifier of a Geo Brick shows 0, which bit 23 declares good.
+TEST_P(OpenInputs, FaultIsOneWhereNoAmplifierIsBuiltIn) {
+  BRICK_COVERS("CARD-1");
+  for (const auto& [board, open] : {std::pair{"turbo-pmac2-pc", true}, std::pair{"geobrick-lv-4", false}}) {
+    SCOPED_TRACE(board);
+    start_board(board);
+    ask("M1->X:$78000,15 M2->X:$78005,14");
+    EXPECT_EQ(ask("M1"), open ? "1" : "0");
+    for (const bool high_is_fault : {false, true}) {
+      ask(high_is_fault ? "I124=$800001" : "I124=$1");
+      ask("#1J/");
+      wait(ms_to_ticks(20));
+      EXPECT_EQ(ask("M2"), open != high_is_fault ? "1" : "0") << "bit 23 of I124 is " << high_is_fault;
+      ask("#1K");
+    }
+  }
+}
+
 BRICK_ON_ENGINES(Boards, Engine::kSystemC, Engine::kLockstep);
+BRICK_ON_ENGINES(OpenInputs, Engine::kSystemC, at_night(Engine::kLockstep));
 
 TEST(BoardList, TheTestAboveKnowsEveryBoardFile) {
   std::vector<std::string> files, known;

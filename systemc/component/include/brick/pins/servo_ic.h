@@ -15,7 +15,7 @@ struct ServoIcChannel {
   In<> enc_a;  // encoder A, or pulse and direction (servo-ic:5.4)
   In<> enc_b;  // encoder B; pulled up (servo-ic:5.4); idle 1
   In<> enc_c;  // encoder index (servo-ic:5.8)
-  In<> fault;  // fault of the amplifier (servo-ic:5.15)
+  In<> fault;  // fault of the amplifier; pulled up (servo-ic:5.15); idle 1
   In<> hmfl;  // home flag (servo-ic:5.15)
   In<> plim;  // positive end switch (servo-ic:5.15)
   In<> mlim;  // negative end switch (servo-ic:5.15)
