@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import select
 import socket
+import threading
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -22,14 +24,18 @@ _WALL_LIMIT = 4
 
 
 class Channel:
-    """The command and the socket to it; one call at a time."""
+    """The command and the socket to it; one call at a time, those of other threads wait for their turn."""
 
     def __init__(self, options: Sequence[str]) -> None:
         self.tick = 0
         self.ns = 0
         self.calls: list[tuple[str, dict[str, Any]]] = []
         self.exact: int | None = None  # calls before the first that was cut off; None: there was none
+        self._texts: list[str] = []  # that have come beside answers
+        self._turn = threading.RLock()  # a call of its holder's signal handler shall be told, not wait for ever
+        self._busy = False
         self._sound = True  # nothing was cut off in the middle of a transfer
+        self._closed = False
         self._count = 0
         self._waiting = b""
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -42,8 +48,29 @@ class Channel:
             theirs.close()
 
     def call(self, method: str, wall_limit: float, **params: Any) -> dict[str, Any]:
-        """The result; a wall_limit of seconds stands beside the parameters."""
-        if not self._sound:
+        """The result; a wall_limit of seconds, the wait for other threads' calls too, stands beside the parameters."""
+        begin = time.monotonic()
+        if not self._turn.acquire(timeout=wall_limit):
+            raise WallTimeout(f"{method}: a call of another thread is under way; expected its end in {wall_limit} s")
+        try:
+            if self._busy:
+                raise BrickError(f"{method}: a call within a call, as of a signal handler; expected it behind that")
+            try:
+                self._busy = True
+                return self._exchange(method, max(0.0, wall_limit - (time.monotonic() - begin)), params)
+            finally:
+                self._busy = False
+        finally:
+            self._turn.release()
+
+    def take_texts(self) -> list[str]:
+        """What programs have sent beside answers since this was asked last."""
+        with self._turn:
+            texts, self._texts = self._texts, []
+        return texts
+
+    def _exchange(self, method: str, wall_limit: float, params: dict[str, Any]) -> dict[str, Any]:
+        if self._closed or not self._sound:
             raise ControllerGone("the way to the controller is closed: by close(), or an exception in a transfer")
         request = {"jsonrpc": "2.0", "id": self._count + 1, "method": method,
                    "params": {**params, "wall_s": wall_limit}}
@@ -67,17 +94,19 @@ class Channel:
         if "error" in answer:
             self._raise(answer["error"])
         result: dict[str, Any] = answer["result"]
-        self._take_time(result)
+        self._take(result)
         return result
 
     def close(self) -> tuple[int, str]:
-        """The end of the controller: its exit status, and what it said last."""
-        self._sound = False
-        self._socket.close()
-        status = self.child.end()
-        said = self.child.said()
-        self.child.close()
-        return status, said
+        """The end of the controller: its exit status, and what it said last. A call of another thread ends by it."""
+        self._closed = True
+        with contextlib.suppress(OSError):  # the other end has gone already
+            self._socket.shutdown(socket.SHUT_RDWR)
+        with self._turn:
+            if not self._busy:  # else this is a signal handler's, and the call below it still looks at the socket
+                self._socket.close()
+            status = self.child.end()
+            return status, self.child.close()
 
     def _send(self, line: bytes) -> None:
         self._sound = False
@@ -111,13 +140,15 @@ class Channel:
         said = self.child.said()
         return ControllerGone(f"{said or what} (exit status {status})")
 
-    def _take_time(self, data: dict[str, Any]) -> None:
+    def _take(self, data: dict[str, Any]) -> None:
+        """What comes beside each answer, an error too."""
+        self._texts += data.get("texts", [])
         self.tick = data.get("tick", self.tick)
         self.ns = data.get("ns", self.ns)
 
     def _raise(self, error: dict[str, Any]) -> None:
         code, message, data = error["code"], error["message"], error.get("data", {})
-        self._take_time(data)
+        self._take(data)
         if code == _REFUSED:
             raise CommandRefused(message, data["number"], data["line"], data["lines"][:-1])
         if code == _BAD_PARAMETERS:

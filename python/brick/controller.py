@@ -100,7 +100,6 @@ class Controller:
         self.wall_limit = wall_limit
         self._check = check
         self._closed = False
-        self._texts: list[str] = []  # that have come beside answers
         # As it is now, for a replay: at the end it holds what was saved.
         self._flash = next((pathlib.Path(file).read_bytes() for file in _values(self.options, "--flash")
                             if pathlib.Path(file).is_file()), None)
@@ -156,9 +155,7 @@ class Controller:
 
     def call(self, method: str, wall_limit: float | None = None, **params: Any) -> dict[str, Any]:
         """A method of docs/control.md as it stands there."""
-        result = self._channel.call(method, self.wall_limit if wall_limit is None else wall_limit, **params)
-        self._texts += result.get("texts", [])
-        return result
+        return self._channel.call(method, self.wall_limit if wall_limit is None else wall_limit, **params)
 
     # ---- Time: it passes in these and in commands
 
@@ -204,8 +201,7 @@ class Controller:
     def texts(self) -> list[str]:
         """Lines that programs have sent since the last call (SEND, CMD)."""
         self.call("texts")
-        texts, self._texts = self._texts, []
-        return texts
+        return self._channel.take_texts()
 
     def __getitem__(self, name: str) -> int | float:
         """A variable: c["P1"], c["I130"]. An I variable that is shown in hexadecimal is a number too."""

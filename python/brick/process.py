@@ -41,12 +41,15 @@ class Child:
     def __init__(self, arguments: Sequence[str], pass_fds: Sequence[int] = (),
                  stdout: int = subprocess.DEVNULL) -> None:
         self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115  until close()
+        self._last = ""  # what it had said by then
         # The process is to end with this one, however this one ends, and not by a Ctrl-C that this one survives.
         command = [executable(), *arguments, "--end-with", str(os.getpid())]
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=stdout, stderr=self._said,
                                         pass_fds=pass_fds, process_group=0)
 
     def said(self) -> str:
+        if self._said.closed:
+            return self._last
         self._said.seek(0)
         return self._said.read().decode(errors="replace").strip()
 
@@ -65,5 +68,8 @@ class Child:
         self.process.terminate()
         return self.end()
 
-    def close(self) -> None:
+    def close(self) -> str:
+        """What it said last."""
+        self._last = self.said()
         self._said.close()
+        return self._last

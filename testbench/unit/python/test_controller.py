@@ -5,6 +5,7 @@ import pathlib
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import brick
@@ -156,6 +157,91 @@ def test_an_exception_in_a_call_leaves_no_old_answer(moving, alarm):
         with pytest.raises(Alarm):
             moving.run(s=3600, wall_limit=0.2)
         assert moving["P1"] == n and moving.call("signal", name="host.breq")["name"] == "host.breq"
+
+
+def together(*works):
+    """What each of them gave, or raised, in threads of their own."""
+    results = [None] * len(works)
+
+    def work(n):
+        try:
+            results[n] = works[n]()
+        except Exception as error:
+            results[n] = error
+
+    threads = [threading.Thread(target=work, args=[n], daemon=True) for n in range(len(works))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(PATIENCE)
+    return results
+
+
+def test_each_thread_has_its_own_answers(moving, monkeypatch):
+    monkeypatch.setattr("brick.channel.START_LIMIT", 1)  # an answer that another thread has taken does not come
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-5)
+    try:
+        moving["P11"], moving["P12"], moving["P13"] = 11, 12, 13
+        asked = [lambda n=n: [moving.command(f"P{n}", wall_limit=PATIENCE) for _ in range(200)] for n in (11, 12, 13)]
+        assert together(*asked) == [["11"] * 200, ["12"] * 200, ["13"] * 200]
+    finally:
+        sys.setswitchinterval(before)
+
+
+def test_a_call_waits_for_that_of_another_thread_up_to_its_limit():
+    with brick.Controller(check=False) as c:
+        os.kill(c.pid, signal.SIGSTOP)
+        first = threading.Thread(target=lambda: c.command("P1"))
+        first.start()
+        while len(c.calls) < 2:  # hello, P1
+            time.sleep(0)
+        with pytest.raises(brick.WallTimeout, match="another thread"):
+            c.command("P2", wall_limit=0.01)
+        os.kill(c.pid, signal.SIGCONT)
+        first.join(PATIENCE)
+        assert [params["line"] for method, params in c.calls if method == "command"] == ["P1"]
+
+
+def test_close_ends_the_call_of_another_thread():
+    c = brick.Controller(check=False)
+
+    def end():
+        while len(c.calls) < 2:
+            time.sleep(0)
+        c.abandon()
+
+    called, _ = together(lambda: c.run(s=3600), end)
+    assert isinstance(called, brick.ControllerGone)
+    assert gone(c.pid)
+
+
+def test_a_call_within_a_call_is_an_error(moving, monkeypatch):
+    told = []
+
+    def ring(number, frame):
+        try:
+            moving.command("P1")
+        except brick.BrickError as error:
+            told.append(str(error))
+
+    before = signal.signal(signal.SIGALRM, ring)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        with pytest.raises(brick.WallTimeout):
+            moving.run(s=3600, wall_limit=0.2)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert told == ["command: a call within a call, as of a signal handler; expected it behind that"]
+    assert moving.command("P1") == moving.command("P1")
+
+
+def test_a_text_that_came_with_a_refused_line_is_kept(moving):
+    moving.script('OPEN PLC 3 CLEAR\nSEND"a text"\nDISABLE PLC 3\nCLOSE\nI5=2\nENABLE PLC 3\n')
+    moving.run(ms=20)
+    with pytest.raises(brick.CommandRefused):
+        moving.command("frob")
+    assert moving.texts() == ["a text"]
 
 
 def test_a_request_that_was_sent_in_part_ends_the_channel(alarm):
