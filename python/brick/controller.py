@@ -204,14 +204,13 @@ class Controller:
         return self._channel.take_texts()
 
     def __getitem__(self, name: str) -> int | float:
-        """A variable: c["P1"], c["I130"]. An I variable that is shown in hexadecimal is a number too."""
-        text = self.command(self._variable(name))
-        if text.startswith("$"):
-            return int(text[1:], 16)
-        try:
-            return int(text)
-        except ValueError:
-            return float(text)
+        """A variable: c["P1"], c["I130"], as a number in whatever form I9 has it shown."""
+        line = self._variable(name)
+        text = self.command(line)
+        value = _number(text.removeprefix(f"{line}="))  # a statement where I9 is odd (firmware:1.6)
+        if isinstance(value, str):
+            raise NoAnswer(f"{line}: {text!r}; expected a number")
+        return value
 
     def __setitem__(self, name: str, value: float) -> None:
         self.command(f"{self._variable(name)}={_digits(value)}")

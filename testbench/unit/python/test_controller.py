@@ -31,6 +31,18 @@ def test_variables_are_items(moving):
             moving[wrong]
 
 
+@pytest.mark.parametrize(("i9", "shown"), [(0, "491522"), (1, "I102=491522"), (2, "$78002"), (3, "I102=$78002")])
+def test_a_variable_is_a_number_in_each_form_of_i9(moving, i9, shown):
+    moving["I9"] = i9
+    try:
+        assert moving.command("I102") == shown
+        assert (moving["I102"], moving["i130"], moving["I9"]) == (0x78002, 112450, i9)
+        moving["P1"], moving["M70"] = -0.5, 3
+        assert (moving["P1"], moving["M70"]) == (-0.5, 3)
+    finally:
+        moving["I9"] = 2
+
+
 def test_a_variable_keeps_its_digits(moving):
     sent = moving.calls
     for value, digits in ((1e-13, "0.0000000000001"), (0.1 + 0.2, "0.30000000000000004"), (True, "1"), (-3, "-3"),
