@@ -23,7 +23,7 @@ _STATUS_EVERY = 1  # ms
 _VARIABLE = re.compile(r"[IPQM]\d{1,4}", re.IGNORECASE)
 _ENCODER = ("enc_a", "enc_b", "enc_c")
 _LIMITS = {"+": "plim", "-": "mlim"}
-_RULES_BROKEN = 1  # exit status, of other failures too
+RULES_BROKEN = 1  # exit status, of other failures too
 _FIVE_VOLTS = "watchdog.pwr_good"
 _FILES = ("--wave", "--record")  # that a replay does not write over
 _CHANNELS = 4  # of a servo IC
@@ -132,7 +132,7 @@ class Controller:
             status, said = self._end()
         if failures:
             raise RulesBroken(failures)
-        if status != 0 and (self._check or status != _RULES_BROKEN):
+        if status != 0 and (self._check or status != RULES_BROKEN):
             raise ControllerGone(f"{said} (exit status {status})")
 
     def abandon(self) -> None:

@@ -5,11 +5,14 @@ waveform. `brick_port` is the number of a free TCP port of 127.0.0.1 with a cont
 from the start, with --brick-wave. A test chooses its controller by a marker:
 
     @pytest.mark.brick(plant="dac8", setup="dac8", seed=7)
+
+Markers of a test, its class and its module add up; of one argument the closest has its way.
 """
 
 from __future__ import annotations
 
 import hashlib
+import inspect
 import pathlib
 import re
 from collections.abc import Generator
@@ -21,6 +24,8 @@ from brick.controller import Controller
 from brick.errors import BrickError
 from brick.served import Served
 
+_CHOSEN = inspect.signature(Controller)
+_CALLS_ALONE = ("wall_limit",)  # what says nothing of a port
 _LONGEST = 200  # characters of a test's name in that of a file
 _REPORT = pytest.StashKey[dict[str, bool]]()
 
@@ -45,14 +50,24 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, None]:
     item.stash.setdefault(_REPORT, {})[report.when or ""] = report.failed
 
 
+def _of_marker(marker: pytest.Mark) -> dict[str, Any]:
+    try:
+        return _CHOSEN.bind_partial(*marker.args, **marker.kwargs).arguments
+    except TypeError as error:
+        wrong = str(error)
+    pytest.fail(f"marker brick: {wrong}; expected arguments of brick.Controller: {', '.join(_CHOSEN.parameters)}",
+                pytrace=False)
+
+
 def _arguments(request: pytest.FixtureRequest) -> dict[str, Any]:
     chosen: dict[str, Any] = {}
     for name in ("engine", "seed"):
         value = request.config.getoption(f"--brick-{name}")
         if value is not None:
             chosen[name] = value
-    marker = request.node.get_closest_marker("brick")
-    return {**chosen, **(marker.kwargs if marker else {})}
+    for marker in reversed(list(request.node.iter_markers("brick"))):  # the closest is the last
+        chosen |= _of_marker(marker)
+    return chosen
 
 
 def _wave(request: pytest.FixtureRequest, temporary: pathlib.Path) -> pathlib.Path:
@@ -93,9 +108,10 @@ def _replay(request: pytest.FixtureRequest, controller: Controller, wave: pathli
 @pytest.fixture
 def brick_port(request: pytest.FixtureRequest, tmp_path: pathlib.Path) -> Generator[int, None, None]:
     """The port of a started controller, which speaks the protocol of docs/ethernet.md; a new one for each test."""
-    arguments = _arguments(request)
-    wave = _wave(request, tmp_path) if request.config.getoption("--brick-wave") else None
-    with Served(wave=str(wave) if wave else None, **arguments) as served:
+    arguments = {name: value for name, value in _arguments(request).items() if name not in _CALLS_ALONE}
+    if request.config.getoption("--brick-wave"):
+        arguments.setdefault("wave", str(_wave(request, tmp_path)))
+    with Served(**arguments) as served:
         yield served.port
-    if wave:
-        print(f"brick_port: waveform {wave}")
+    if "wave" in arguments:
+        print(f"brick_port: waveform {arguments['wave']}")

@@ -313,6 +313,17 @@ def test_a_command_that_does_not_listen_is_ended(tmp_path, monkeypatch, alarm):
     assert gone(int((tmp_path / "pid").read_text()))
 
 
+def test_a_port_of_a_controller_with_broken_rules_may_end_without_an_error(tmp_path, monkeypatch):
+    fake = tmp_path / "brick"
+    fake.write_text("#!/bin/sh\ntrap 'exit 1' TERM\necho listening on 127.0.0.1:9\nwhile :; do sleep 0.01; done\n")
+    fake.chmod(0o755)
+    monkeypatch.setenv("BRICK", str(fake))
+    with brick.Served(check=False) as served:
+        assert served.port == 9
+    with pytest.raises(brick.ControllerGone, match="exit status 1"), brick.Served():
+        pass
+
+
 def test_loss_of_five_volts_trips_and_shows():
     with brick.Controller(check=False) as c:
         c.lose_five_volts()

@@ -66,3 +66,43 @@ def test_a_port_has_its_waveform_from_the_start_and_no_other_test_has_one(run):
     folder, _ = run
     assert (folder / wave_of("test_them.py::test_of_a_host_program")).stat().st_size > 1000
     assert len(list((folder / "waves").iterdir())) == 3
+
+
+MARKED = """
+import os, pathlib, socket
+import pytest
+
+pytestmark = pytest.mark.brick(seed=5, options=["--realtime"])
+
+@pytest.mark.brick("turbo-pmac2-pc", "dac8", seed=7, wall_limit=11)
+class TestOfAClass:
+    @pytest.mark.brick(setup="dac8", seed=8, options=[])
+    def test_adds_up(self, brick_controller):
+        about = brick_controller.about
+        assert (about["board"], about["plant"], about["seed"]) == ("turbo-pmac2-pc", "dac8", 8)
+        assert brick_controller["I130"] == 112450 and brick_controller.wall_limit == 11
+        assert "--realtime" not in brick_controller.options
+
+    @pytest.mark.brick(check=False, wave="own.vcd", options=[])
+    def test_of_a_port(self, brick_port):
+        socket.create_connection(("127.0.0.1", brick_port), 60).close()
+        assert pathlib.Path("own.vcd").exists() and not list(pathlib.Path("waves").glob("*port*"))
+
+@pytest.mark.brick("geobrick-lv-8", "dac8", "dac8", "systemc")
+def test_with_one_too_many(brick_controller):
+    pass
+
+@pytest.mark.brick(frob=1)
+def test_with_one_unknown(brick_port):
+    pass
+"""
+
+
+def test_markers_add_up_and_wrong_ones_are_errors(tmp_path):
+    (tmp_path / "test_marked.py").write_text(MARKED)
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "brick.pytest_plugin", "--brick-wave",
+               "waves", "test_marked.py"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, env=os.environ)
+    assert "2 passed, 2 errors" in done.stdout, done.stdout + done.stderr
+    for what in ("too many positional arguments", "got an unexpected keyword argument 'frob'"):
+        assert f"marker brick: {what}; expected arguments of brick.Controller: board, plant, setup" in done.stdout
