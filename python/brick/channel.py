@@ -13,6 +13,7 @@ from typing import Any
 
 from brick.errors import BrickError, CommandRefused, ControllerGone, NoAnswer, SimulatedTimeout, WallTimeout
 from brick.process import Child
+from brick.replay import outcome
 
 PROTOCOL = "1.0"
 START_LIMIT = 120.0  # seconds of the wall for the start of the controller, and what a call may take beyond its limit
@@ -31,6 +32,7 @@ class Channel:
         self.ns = 0
         self.calls: list[tuple[str, dict[str, Any]]] = []
         self.exact: int | None = None  # calls before the first that was cut off; None: there was none
+        self.errors: dict[int, str] = {}  # of calls, by their place among them, that ended with one
         self._texts: list[str] = []  # that have come beside answers
         self._turn = threading.RLock()  # a call of its holder's signal handler shall be told, not wait for ever
         self._busy = False
@@ -92,7 +94,9 @@ class Channel:
             if cut_off and self.exact is None:
                 self.exact = len(self.calls) - 1
         if "error" in answer:
-            self._raise(answer["error"])
+            told = self._error(answer["error"])
+            self.errors[len(self.calls) - 1] = outcome(told)
+            raise told
         result: dict[str, Any] = answer["result"]
         self._take(result)
         return result
@@ -146,11 +150,11 @@ class Channel:
         self.tick = data.get("tick", self.tick)
         self.ns = data.get("ns", self.ns)
 
-    def _raise(self, error: dict[str, Any]) -> None:
+    def _error(self, error: dict[str, Any]) -> Exception:
         code, message, data = error["code"], error["message"], error.get("data", {})
         self._take(data)
         if code == _REFUSED:
-            raise CommandRefused(message, data["number"], data["line"], data["lines"][:-1])
+            return CommandRefused(message, data["number"], data["line"], data["lines"][:-1])
         if code == _BAD_PARAMETERS:
-            raise ValueError(message)
-        raise _KINDS.get(code, BrickError)(message)
+            return ValueError(message)
+        return _KINDS.get(code, BrickError)(message)

@@ -9,13 +9,14 @@ import pathlib
 import re
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from types import TracebackType
 from typing import Any
 
 from brick.channel import PROTOCOL, START_LIMIT, Channel
 from brick.errors import BrickError, ControllerGone, MotorOff, NoAnswer, RulesBroken, SimulatedTimeout, WallTimeout
 from brick.record import Record
+from brick.replay import options_again, play, values
 
 WALL_LIMIT = 60.0  # seconds of the wall that a call may take, unless told otherwise
 _SEEN_BY = 20  # ms: what a command begins shows in the status by then (motion:6.6/1)
@@ -25,7 +26,6 @@ _ENCODER = ("enc_a", "enc_b", "enc_c")
 _LIMITS = {"+": "plim", "-": "mlim"}
 RULES_BROKEN = 1  # exit status, of other failures too
 _FIVE_VOLTS = "watchdog.pwr_good"
-_FILES = ("--wave", "--record")  # that a replay does not write over
 _CHANNELS = 4  # of a servo IC
 
 
@@ -101,7 +101,7 @@ class Controller:
         self._check = check
         self._closed = False
         # As it is now, for a replay: at the end it holds what was saved.
-        self._flash = next((pathlib.Path(file).read_bytes() for file in _values(self.options, "--flash")
+        self._flash = next((pathlib.Path(file).read_bytes() for file in values(self.options, "--flash")
                             if pathlib.Path(file).is_file()), None)
         self._channel = Channel(self.options)
         try:
@@ -322,29 +322,17 @@ class Controller:
         return failures
 
     def replay(self, wave: str) -> None:
-        """The calls so far once more, in a new controller with a waveform from its start. Errors are as they were.
+        """The calls so far once more, in a new controller with a waveform from its start, which is always made.
 
-        WallTimeout where a call was cut off, then or now: nobody knows where it stood, and the waveform ends before it.
-        The flash file is that of the start, and stays as it is.
+        BrickError where a call does not end as it did, with its result or its error. WallTimeout where one was cut off,
+        then or now: nobody knows where it stood, and the waveform ends before it. Files of the first run stay as they
+        are; the flash file is that of its start.
         """
-        calls = list(self.calls)
-        whole = self._channel.exact
+        calls, errors, whole = list(self.calls), dict(self._channel.errors), self._channel.exact
         with tempfile.TemporaryDirectory() as folder:
-            options = [*_without(self.options, *_FILES, "--flash"), *self._flash_options(folder)]
+            options = [*options_again(self.options), *self._flash_options(folder)]
             with Controller(wave=wave, options=options, wall_limit=self.wall_limit, check=False) as again:
-                for n, (method, params) in enumerate(calls):
-                    if n == whole:
-                        raise WallTimeout(f"call {n} ({method}) was cut off: {wave} ends before it")
-                    if method == "hello" or method.startswith(("wave.", "record.")):
-                        continue
-                    try:
-                        again.call(method, **params)
-                    except WallTimeout:
-                        raise WallTimeout(f"call {n} ({method}) was cut off: {wave} ends within it") from None
-                    except ControllerGone:
-                        raise
-                    except (BrickError, ValueError):
-                        pass
+                play(again.call, calls, errors, whole, wave)
 
     def _flash_options(self, folder: str) -> list[str]:
         if self._flash is None:
@@ -352,26 +340,6 @@ class Controller:
         copy = pathlib.Path(folder) / "flash"
         copy.write_bytes(self._flash)
         return [f"--flash={copy}"]
-
-
-def _values(options: Sequence[str], name: str) -> Iterator[str]:
-    """Those of an option of the command line, NAME=VALUE or NAME VALUE."""
-    for at, option in enumerate(options):
-        if option == name:
-            yield from options[at + 1:at + 2]
-        elif option.startswith(name + "="):
-            yield option[len(name) + 1:]
-
-
-def _without(options: Sequence[str], *names: str) -> list[str]:
-    left: list[str] = []
-    rest = iter(options)
-    for option in rest:
-        if option in names:
-            next(rest, None)
-        elif option != "--realtime" and not option.startswith(tuple(name + "=" for name in names)):
-            left.append(option)
-    return left
 
 
 def _left(wall: float) -> float:

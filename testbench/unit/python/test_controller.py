@@ -417,6 +417,37 @@ def test_a_replay_does_the_same_with_a_waveform(tmp_path):
     assert (tmp_path / "replay.vcd").stat().st_size > 10_000
 
 
+def test_a_replay_that_goes_another_way_says_so(tmp_path):
+    wave, included = tmp_path / "replay.vcd", tmp_path / "included.pmc"
+    with brick.Controller() as c:
+        included.write_text("P1=3\n")
+        c.load(str(included))
+        with pytest.raises(ValueError, match="no signal"):
+            c.signal("frob")
+        c.replay(str(wave))
+        included.unlink()
+        c.run(ms=1)
+        with pytest.raises(brick.BrickError, match=r"call 1 \(script\) ended with ValueError: .*; expected a result"):
+            c.replay(str(wave))
+        with pytest.raises(ValueError, match="cannot be read"):
+            c.load(str(included))
+        included.write_text("P1=3\n")
+        with pytest.raises(brick.BrickError, match=r"call 4 \(script\) ended with a result; expected ValueError: "):
+            c.replay(str(wave))
+    assert wave.stat().st_size > 1000
+
+
+@pytest.mark.parametrize(("options", "file"), [(["--profile", "profile"], "profile"),
+                                               (["--record=r.csv", "--record-of=host.breq"], "r.csv")])
+def test_a_replay_leaves_the_files_of_the_first_run(tmp_path, monkeypatch, options, file):
+    monkeypatch.chdir(tmp_path)
+    with brick.Controller(options=options) as c:
+        c.run(ms=1)
+    pathlib.Path(file).write_text("mine")
+    c.replay("replay.vcd")
+    assert pathlib.Path(file).read_text() == "mine" and pathlib.Path("replay.vcd").stat().st_size > 1000
+
+
 def test_a_replay_ends_where_a_call_was_cut_off(tmp_path):
     with brick.Controller(realtime=True, options=["--wave", str(tmp_path / "own.vcd")]) as c:
         c["P1"] = 3
