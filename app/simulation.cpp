@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -133,8 +134,8 @@ void Simulation::open_record(const std::string& file, const std::string& of) {
 
 void Simulation::close_record() {
   if (!recorder_) return;
-  recorder_->close();
-  recorder_.reset();
+  const auto recorder = std::exchange(recorder_, nullptr);  // one that cannot be written is none that goes on
+  recorder->close();
 }
 
 void Simulation::open_profile(const std::string& file, const std::string& image) {

@@ -84,6 +84,47 @@ def test_a_jog_arrives_and_its_record_shows_it(moving):
     assert numpy.allclose(servo, 1e3 / 2258.65, rtol=1e-3)  # default clocks
 
 
+@pytest.fixture
+def full(tmp_path):
+    """A record that is opened and has no room."""
+    (tmp_path / "full.csv").symlink_to("/dev/full")
+    return str(tmp_path / "full.csv")
+
+
+def test_a_record_that_failed_is_not_in_the_way_of_the_next(moving, full):
+    with pytest.raises(ValueError, match="cannot be written"), moving.record(file=full):
+        moving.run(ms=1)
+    with moving.record("host.breq") as record:
+        moving.run(ms=1)
+    assert len(record) in (2, 3)  # 2258.65 servo interrupts a second
+
+
+def test_a_record_that_was_cut_off_as_it_began_is_not_in_the_way_of_the_next(alarm):
+    with brick.Controller(check=False) as c:
+        def ring(number, frame):
+            os.kill(c.pid, signal.SIGCONT)
+            raise Alarm
+
+        signal.signal(signal.SIGALRM, ring)
+        os.kill(c.pid, signal.SIGSTOP)
+        alarm(0.05)
+        with pytest.raises(Alarm), c.record("host.breq"):
+            pass
+        with c.record("host.breq"):
+            c.run(ms=1)
+
+
+def test_what_the_body_of_a_record_raises_comes_out(moving, full):
+    with pytest.raises(KeyError, match="mine") as raised, moving.record(file=full):
+        moving.run(ms=1)
+        raise KeyError("mine")
+    assert any("cannot be written" in note for note in raised.value.__notes__)
+    with pytest.raises(KeyError, match="mine") as raised, brick.Controller() as c, c.record():
+        os.kill(c.pid, signal.SIGKILL)
+        raise KeyError("mine")
+    assert any("exit status -9" in note for note in raised.value.__notes__)
+
+
 def test_faults_of_the_plant_reach_the_motor(moving):
     moving.command("#3J+")
     moving.run(ms=50)
