@@ -25,6 +25,7 @@ class Served:
                  check: bool = True, options: Sequence[str] = ()) -> None:
         chosen = run_options(board=board, plant=plant, load=setup, engine=engine, seed=seed, wave=wave)
         self._check = check
+        self._closed = False
         pace = [] if realtime else ["--free"]
         self._child = Child(["serve", "--listen", "127.0.0.1:0", *pace, *chosen, *options], stdout=subprocess.PIPE)
         try:
@@ -50,9 +51,11 @@ class Served:
 
     def close(self) -> None:
         """Ends it; its waveform is whole then. Raises ControllerGone if it had failed."""
+        if self._closed:
+            return
+        self._closed = True
         status = self._child.stop()
-        said = self._child.said()
-        self._child.close()
+        said = self._child.close()
         if status != 0 and (self._check or status != RULES_BROKEN):
             raise ControllerGone(f"{said} (exit status {status})")
 
@@ -61,4 +64,9 @@ class Served:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
-        self.close()
+        try:
+            self.close()
+        except ControllerGone as failure:
+            if error is None:
+                raise
+            error.add_note(f"brick serve: {failure}")

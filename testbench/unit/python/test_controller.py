@@ -365,6 +365,15 @@ def test_a_port_of_a_controller_with_broken_rules_may_end_without_an_error(tmp_p
         pass
 
 
+def test_a_port_may_be_closed_twice_and_leaves_what_the_body_raises():
+    with pytest.raises(KeyError, match="mine") as raised, brick.Served() as served:
+        os.kill(served.pid, signal.SIGKILL)
+        gone(served.pid)
+        raise KeyError("mine")
+    assert any("exit status -9" in note for note in raised.value.__notes__)
+    served.close()
+
+
 def test_loss_of_five_volts_trips_and_shows():
     with brick.Controller(check=False) as c:
         c.lose_five_volts()
