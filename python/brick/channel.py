@@ -51,6 +51,7 @@ class Channel:
 
     def call(self, method: str, wall_limit: float, **params: Any) -> dict[str, Any]:
         """The result; a wall_limit of seconds, the wait for other threads' calls too, stands beside the parameters."""
+        self.child.need_ours(method)  # its lock may be another thread's, which a fork has not
         begin = time.monotonic()
         if not self._turn.acquire(timeout=wall_limit):
             raise WallTimeout(f"{method}: a call of another thread is under way; expected its end in {wall_limit} s")
@@ -102,8 +103,14 @@ class Channel:
         return result
 
     def close(self) -> tuple[int, str]:
-        """The end of the controller: its exit status, and what it said last. A call of another thread ends by it."""
+        """The end of the controller: its exit status, and what it said last. A call of another thread ends by it.
+
+        It needs no end of the socket's copies, which forks of this process may have. In one nothing ends.
+        """
         self._closed = True
+        if not self.child.ours:
+            self._socket.close()
+            return 0, self.child.close()
         with contextlib.suppress(OSError):  # the other end has gone already
             self._socket.shutdown(socket.SHUT_RDWR)
         with self._turn:

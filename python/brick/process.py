@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Sequence
 from typing import IO
 
-from brick.errors import ControllerGone
+from brick.errors import BrickError, ControllerGone
 
 _PATIENCE = 10  # seconds of the wall for an end
 
@@ -42,34 +42,47 @@ class Child:
                  stdout: int = subprocess.DEVNULL) -> None:
         self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115  until close()
         self._last = ""  # what it had said by then
+        self._starter = os.getpid()
         # The process is to end with this one, however this one ends, and not by a Ctrl-C that this one survives.
         command = [executable(), *arguments, "--end-with", str(os.getpid())]
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=stdout, stderr=self._said,
                                         pass_fds=pass_fds, process_group=0)
 
+    @property
+    def ours(self) -> bool:
+        """False in a fork of the process that has started it: there it is neither heard, ended nor waited for."""
+        return os.getpid() == self._starter
+
+    def need_ours(self, what: str) -> None:
+        if not self.ours:
+            raise BrickError(f"{what}: process {os.getpid()} is a fork of {self._starter}, which has the controller; "
+                             "expected the call there, or a controller of its own")
+
     def said(self) -> str:
-        if self._said.closed:
+        if self._said.closed or not self.ours:
             return self._last
         self._said.seek(0)
         return self._said.read().decode(errors="replace").strip()
 
     def end(self, patience: float = _PATIENCE) -> int:
         """Waits for an end that is under way, ends it where there is none."""
+        self.need_ours("end")
         try:
             status = self.process.wait(patience)
         except subprocess.TimeoutExpired:
             self.process.kill()
             status = self.process.wait()
-        if self.process.stdout is not None:
-            self.process.stdout.close()
         return status
 
     def stop(self) -> int:
+        self.need_ours("stop")
         self.process.terminate()
         return self.end()
 
     def close(self) -> str:
-        """What it said last."""
+        """What it said last. Of the files a fork closes its own copies alone."""
         self._last = self.said()
         self._said.close()
+        if self.process.stdout is not None:
+            self.process.stdout.close()
         return self._last

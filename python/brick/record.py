@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import os
 import pathlib
 import shutil
 import tempfile
@@ -31,6 +32,7 @@ class Record:
     def __enter__(self) -> Record:
         if self._file is None:
             self._folder = tempfile.mkdtemp(prefix="brick-")
+            self._maker = os.getpid()
         self.file = pathlib.Path(self._file or f"{self._folder}/record.csv").absolute()
         try:
             self._call("record.start", file=str(self.file), of=self._of)
@@ -88,5 +90,5 @@ class Record:
         return pandas.DataFrame(self.rows, columns=self.names).set_index("time_ms")
 
     def _remove(self) -> None:
-        if self._folder is not None:
+        if self._folder is not None and os.getpid() == self._maker:  # a fork's record is not its own
             shutil.rmtree(self._folder, ignore_errors=True)

@@ -54,6 +54,9 @@ class Served:
         if self._closed:
             return
         self._closed = True
+        if not self._child.ours:
+            self._child.close()
+            return
         status = self._child.stop()
         said = self._child.close()
         if status != 0 and (self._check or status != RULES_BROKEN):

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -295,6 +296,60 @@ def test_a_text_that_came_with_a_refused_line_is_kept(moving):
     with pytest.raises(brick.CommandRefused):
         moving.command("frob")
     assert moving.texts() == ["a text"]
+
+
+def in_a_fork(work):
+    """The texts that work() gives, in a fork that ends without a look behind."""
+    mine, its = os.pipe()
+    if (pid := os.fork()) == 0:
+        try:
+            os.write(its, "\n".join(work()).encode())
+        finally:
+            os._exit(0)
+    os.close(its)
+    with open(mine) as said:
+        text = said.read()
+    os.waitpid(pid, 0)
+    return text.split("\n")
+
+
+def test_a_fork_is_told_that_the_controller_is_not_its_own():
+    with brick.Controller() as c, brick.Served() as served, c.record("host.breq") as record:
+        c["P1"] = 5
+
+        def work():
+            for use in (lambda: c.command("P1"), c.texts, lambda: record.__exit__(None, None, None)):
+                try:
+                    use()
+                    yield "no error"
+                except brick.BrickError as error:
+                    yield str(error).partition(": ")[2]
+            for end in (served.close, c.abandon, c.close):
+                yield str(end())
+
+        *uses, served_end, abandoned, closed = in_a_fork(work)
+        assert all(f"is a fork of {os.getpid()}, which has the controller" in use for use in uses) and len(uses) == 3
+        assert [served_end, abandoned, closed] == ["None"] * 3
+        with socket.create_connection(("127.0.0.1", served.port), PATIENCE):
+            pass
+        c.run(ms=1)
+        assert c["P1"] == 5
+    assert len(record) in (2, 3)
+
+
+def test_a_fork_that_leaves_the_block_ends_nothing_and_an_end_waits_for_no_fork():
+    text = ("import brick, os, sys\nread, write = os.pipe()\n"
+            "with brick.Controller() as c, brick.Served() as s:\n"
+            "    for status in ('sys.exit(3)', '0'):\n"
+            "        if (pid := os.fork()) == 0:\n            exec(status)\n            break\n"
+            "        print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), flush=True)\n"
+            "        c['P1'] = 4\n"
+            "    else:\n"
+            "        if (pid := os.fork()) == 0: os.close(write); os.read(read, 1); os._exit(0)\n"
+            "        c.close(); print(c.pid == s.pid, flush=True)\n")
+    done = subprocess.run([sys.executable, "-c", text], text=True, capture_output=True, timeout=PATIENCE)
+    assert (done.stdout, done.returncode) == ("3\n0\nFalse\n", 0), done.stderr
+    assert "Error" not in done.stderr
 
 
 def test_a_request_that_was_sent_in_part_ends_the_channel(alarm):
