@@ -152,11 +152,13 @@ json ControlSession::command(RpcParams& params) {
   return result;
 }
 
-// Lines of a host script, @ lines too. A refused line is an answer here.
+// Lines of a host script, @ lines too. A refused line is an answer here. Names of files are the client's, whose folder
+// may be another.
 json ControlSession::script(RpcParams& params) {
   std::istringstream in(params.text("text"));
+  const std::string folder = params.text("folder", "");
   params.end();
-  const auto lines = read_script(in, "script");
+  const auto lines = read_script(in, folder.empty() ? "script" : folder + "/script");
   std::ostringstream out;
   ScriptPlayer player(simulation_.link(), out, false);
   player.check(lines);

@@ -27,7 +27,7 @@ _WALL_LIMIT = 4
 class Channel:
     """The command and the socket to it; one call at a time, those of other threads wait for their turn."""
 
-    def __init__(self, options: Sequence[str]) -> None:
+    def __init__(self, options: Sequence[str], folder: str | None = None) -> None:
         self.tick = 0
         self.ns = 0
         self.calls: list[tuple[str, dict[str, Any]]] = []
@@ -42,7 +42,8 @@ class Channel:
         self._waiting = b""
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
-            self.child = Child(["control", f"fd:{theirs.fileno()}", *options], pass_fds=[theirs.fileno()])
+            self.child = Child(["control", f"fd:{theirs.fileno()}", *options], pass_fds=[theirs.fileno()],
+                               folder=folder)
         except BaseException:
             self._socket.close()
             raise

@@ -5,6 +5,7 @@ from __future__ import annotations
 import decimal
 import math
 import operator
+import os
 import pathlib
 import re
 import tempfile
@@ -15,6 +16,7 @@ from typing import Any
 
 from brick.channel import PROTOCOL, START_LIMIT, Channel
 from brick.errors import BrickError, ControllerGone, MotorOff, NoAnswer, RulesBroken, SimulatedTimeout, WallTimeout
+from brick.process import place
 from brick.record import Record
 from brick.replay import options_again, play, values
 
@@ -103,6 +105,7 @@ class Controller:
         # As it is now, for a replay: at the end it holds what was saved.
         self._flash = next((pathlib.Path(file).read_bytes() for file in values(self.options, "--flash")
                             if pathlib.Path(file).is_file()), None)
+        self._folder = os.getcwd()  # from which names of files in the options count, in a replay too
         self._channel = Channel(self.options)
         try:
             self.about = self._channel.call("hello", START_LIMIT, protocol=PROTOCOL)
@@ -192,12 +195,14 @@ class Controller:
 
     def script(self, text: str, wall_limit: float | None = None) -> list[str]:
         """Plays lines of a host script (docs/scripts.md): @dpram, @jumper, @reset, @power, ...; what it prints."""
-        lines: list[str] = self.call("script", wall_limit, text=text)["lines"]
+        folder = os.getcwd()
+        here = {} if folder == self._folder else {"folder": folder}
+        lines: list[str] = self.call("script", wall_limit, text=text, **here)["lines"]
         return lines
 
-    def load(self, file: str, wall_limit: float | None = None) -> None:
+    def load(self, file: str | os.PathLike[str], wall_limit: float | None = None) -> None:
         """Sends a command file. BrickError where a line of it is refused."""
-        refused = self.call("script", wall_limit, text=f'#include "{file}"\n')
+        refused = self.call("script", wall_limit, text=f'#include "{place(file)}"\n')
         if refused["refused"]:
             raise BrickError(f"{file}: {refused['refused']} lines refused: {' '.join(refused['lines'])}")
 
@@ -308,34 +313,41 @@ class Controller:
 
     # ---- Files
 
-    def start_wave(self, file: str, trace: str | None = None) -> None:
+    def start_wave(self, file: str | os.PathLike[str], trace: str | None = None) -> None:
         """A waveform from now on, FILE.vcd or FILE.fst; trace: names or globs with commas between."""
-        self.call("wave.start", file=file, trace=trace)
+        self.call("wave.start", file=place(file), trace=trace)
 
     def stop_wave(self) -> None:
         self.call("wave.stop")
 
-    def record(self, of: str = "", file: str | None = None) -> Record:
+    def record(self, of: str = "", file: str | os.PathLike[str] | None = None) -> Record:
         """Records what happens inside a `with`, see Record. of: columns of docs/record.md."""
-        return Record(self.call, of, file)
+        return Record(self.call, of, None if file is None else place(file))
 
     def failures(self) -> list[str]:
         """Rules of the buses that were broken, and clocks with two sources, so far: one line each."""
         failures: list[str] = self.call("check")["failures"]
         return failures
 
-    def replay(self, wave: str) -> None:
+    def replay(self, wave: str | os.PathLike[str]) -> None:
         """The calls so far once more, in a new controller with a waveform from its start, which is always made.
 
         BrickError where a call does not end as it did, with its result or its error. WallTimeout where one was cut off,
         then or now: nobody knows where it stood, and the waveform ends before it. Files of the first run stay as they
         are; the flash file is that of its start.
         """
+        wave = place(wave)
         calls, errors, whole = list(self.calls), dict(self._channel.errors), self._channel.exact
         with tempfile.TemporaryDirectory() as folder:
-            options = [*options_again(self.options), *self._flash_options(folder)]
-            with Controller(wave=wave, options=options, wall_limit=self.wall_limit, check=False) as again:
-                play(again.call, calls, errors, whole, wave)
+            options = [*options_again(self.options), *self._flash_options(folder), f"--wave={wave}"]
+            again = Channel(options, self._folder)
+            try:
+                again.call("hello", START_LIMIT, protocol=PROTOCOL)
+                play(lambda method, **params: again.call(method, self.wall_limit, **params), calls, errors, whole, wave)
+            finally:
+                status, said = again.close()
+        if status not in (0, RULES_BROKEN):
+            raise ControllerGone(f"{said} (exit status {status})")
 
     def _flash_options(self, folder: str) -> list[str]:
         if self._flash is None:

@@ -14,18 +14,18 @@ from typing import IO
 from brick.errors import BrickError, ControllerGone
 
 _PATIENCE = 10  # seconds of the wall for an end
+_HERE = pathlib.Path(__file__).resolve().parent
 
 
 def executable() -> str:
     """The command: $BRICK, else the one of this package, of the tree this stands in, or on the path."""
     if named := os.environ.get("BRICK"):
-        return named
-    here = pathlib.Path(__file__).resolve().parent
-    for place in (here / "_installed/bin/brick", here.parents[1] / "build/release/bin/brick"):
-        if place.is_file():
-            return str(place)
+        return os.path.abspath(named) if os.sep in named else named  # the command may start in another folder
+    for file in (_HERE / "_installed/bin/brick", _HERE.parents[1] / "build/release/bin/brick"):
+        if file.is_file():
+            return str(file)
     if found := shutil.which("brick"):
-        return found
+        return os.path.abspath(found)
     raise ControllerGone("no command brick; expected it on the path, or its place in $BRICK")
 
 
@@ -35,18 +35,23 @@ def main() -> None:
     os.execv(program, [program, *sys.argv[1:]])
 
 
-class Child:
-    """A running command; what it says on stderr is kept for the message of an error."""
+def place(file: str | os.PathLike[str]) -> str:
+    """The name in full, from the folder in which the caller stands now: the command stands where it was started."""
+    return str(pathlib.Path(file).absolute())
 
-    def __init__(self, arguments: Sequence[str], pass_fds: Sequence[int] = (),
-                 stdout: int = subprocess.DEVNULL) -> None:
+
+class Child:
+    """A running command; what it says on stderr is kept for the message of an error. folder: in which it runs."""
+
+    def __init__(self, arguments: Sequence[str], pass_fds: Sequence[int] = (), stdout: int = subprocess.DEVNULL,
+                 folder: str | None = None) -> None:
         self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115  until close()
         self._last = ""  # what it had said by then
         self._starter = os.getpid()
         # The process is to end with this one, however this one ends, and not by a Ctrl-C that this one survives.
         command = [executable(), *arguments, "--end-with", str(os.getpid())]
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=stdout, stderr=self._said,
-                                        pass_fds=pass_fds, process_group=0)
+                                        pass_fds=pass_fds, process_group=0, cwd=folder)
 
     @property
     def ours(self) -> bool:

@@ -27,6 +27,7 @@ from brick.served import Served
 _CHOSEN = inspect.signature(Controller)
 _CALLS_ALONE = ("wall_limit",)  # what says nothing of a port
 _LONGEST = 200  # characters of a test's name in that of a file
+_WAVES = pytest.StashKey[pathlib.Path | None]()
 _REPORT = pytest.StashKey[dict[str, bool]]()
 
 
@@ -39,6 +40,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    folder = config.getoption("--brick-wave")
+    config.stash[_WAVES] = pathlib.Path(folder).absolute() if folder else None  # before a test goes elsewhere
     config.addinivalue_line("markers", "brick(board, plant, setup, engine, seed, options, ...): the controller of "
                                        "brick_controller and brick_port, arguments of brick.Controller")
 
@@ -72,8 +75,7 @@ def _arguments(request: pytest.FixtureRequest) -> dict[str, Any]:
 
 def _wave(request: pytest.FixtureRequest, temporary: pathlib.Path) -> pathlib.Path:
     """A name of its own for each test, whatever process of pytest-xdist runs it and whatever characters it has."""
-    folder = request.config.getoption("--brick-wave")
-    place = pathlib.Path(folder) if folder else temporary
+    place = request.config.stash[_WAVES] or temporary
     place.mkdir(parents=True, exist_ok=True)
     name = request.node.nodeid
     digits = hashlib.sha256(name.encode(errors="surrogateescape")).hexdigest()[:8]
@@ -109,7 +111,7 @@ def _replay(request: pytest.FixtureRequest, controller: Controller, wave: pathli
 def brick_port(request: pytest.FixtureRequest, tmp_path: pathlib.Path) -> Generator[int, None, None]:
     """The port of a started controller, which speaks the protocol of docs/ethernet.md; a new one for each test."""
     arguments = {name: value for name, value in _arguments(request).items() if name not in _CALLS_ALONE}
-    if request.config.getoption("--brick-wave"):
+    if request.config.stash[_WAVES]:
         arguments.setdefault("wave", str(_wave(request, tmp_path)))
     with Served(**arguments) as served:
         yield served.port

@@ -33,7 +33,7 @@ class Record:
         if self._file is None:
             self._folder = tempfile.mkdtemp(prefix="brick-")
             self._maker = os.getpid()
-        self.file = pathlib.Path(self._file or f"{self._folder}/record.csv").absolute()
+        self.file = pathlib.Path(self._file or f"{self._folder}/record.csv")
         try:
             self._call("record.start", file=str(self.file), of=self._of)
         except (BrickError, ValueError):

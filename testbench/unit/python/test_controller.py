@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import shutil
 import signal
 import socket
 import subprocess
@@ -551,6 +552,33 @@ def test_a_replay_leaves_the_files_of_the_first_run(tmp_path, monkeypatch, optio
     pathlib.Path(file).write_text("mine")
     c.replay("replay.vcd")
     assert pathlib.Path(file).read_text() == "mine" and pathlib.Path("replay.vcd").stat().st_size > 1000
+
+
+def test_names_of_files_count_from_where_the_caller_stands(tmp_path, monkeypatch):
+    first, then = tmp_path / "first", tmp_path / "then"
+    for folder in (first, then):
+        folder.mkdir()
+        (folder / "line.pmc").write_text(f"P1={len(folder.name)}\n")
+    shutil.copy(pathlib.Path(__file__).resolve().parents[3] / "boards/geobrick-lv-4.toml", first / "board.toml")
+    monkeypatch.chdir(first)
+    with brick.Controller(board="board.toml", options=["--load=line.pmc", "--profile=profile"]) as c:
+        assert c["P1"] == len("first")
+        with c.record("host.breq", file="record.csv") as record:
+            monkeypatch.chdir(then)
+            c.run(ms=1)
+        assert len(record) in (2, 3) and (first / "record.csv").exists()
+        c.start_wave(pathlib.Path("wave.vcd"))
+        c.stop_wave()
+        for again in (lambda: c.load("line.pmc"), lambda: c.script('#include "line.pmc"\n')):
+            c["P1"] = 0
+            again()
+            assert c["P1"] == len("then")
+        c.replay("replay.vcd")
+        monkeypatch.chdir(first)
+        c.script('#include "line.pmc"\n')
+        assert c["P1"] == len("first")
+    assert {file.name for file in then.iterdir()} == {"line.pmc", "wave.vcd", "replay.vcd"}
+    assert {file.name for file in first.iterdir()} == {"line.pmc", "board.toml", "record.csv", "profile"}
 
 
 def test_a_replay_ends_where_a_call_was_cut_off(tmp_path):

@@ -9,12 +9,13 @@ import sys
 import pytest
 
 TESTS = """
-import pathlib, socket, struct
+import os, pathlib, socket, struct
 import pytest
 
 @pytest.mark.brick(plant="dac8", setup="dac8")
 @pytest.mark.parametrize("sign", ["+", "*"])
-def test_that_fails(brick_controller, sign):
+def test_that_fails(brick_controller, sign, tmp_path):
+    os.chdir(tmp_path)
     brick_controller.command("#1J:200")
     brick_controller.run(ms=3)
     assert brick_controller["P1"] == 5
