@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import decimal
 import json
+import numbers
+import operator
 import select
 import socket
 import threading
@@ -19,9 +22,30 @@ PROTOCOL = "1.0"
 START_LIMIT = 120.0  # seconds of the wall for the start of the controller, and what a call may take beyond its limit
 
 _KINDS: dict[int, type[BrickError]] = {2: NoAnswer, 3: SimulatedTimeout, 4: WallTimeout, 5: ControllerGone}
-_BAD_PARAMETERS = -32602
+_BAD_REQUEST = (-32700, -32600, -32601, -32602)  # whatever is wrong with it came with the arguments
 _REFUSED = 1
 _WALL_LIMIT = 4
+
+
+def _plain(value: Any) -> Any:
+    """Numbers of other libraries."""
+    if hasattr(value, "__index__"):
+        return operator.index(value)
+    if isinstance(value, numbers.Real | decimal.Decimal):
+        return float(value)
+    raise TypeError(f"{value!r} is no text and no number")
+
+
+def _read(line: bytes) -> dict[str, Any]:
+    """An answer, of which is looked at what every one has."""
+    try:
+        answer: dict[str, Any] = json.loads(line)
+        told = answer["error"] if "error" in answer else answer["result"]
+        if "id" in answer and isinstance(told, dict) and ("error" not in answer or {"code", "message"} <= told.keys()):
+            return answer
+    except (ValueError, TypeError, KeyError, RecursionError):
+        pass
+    raise BrickError(f"the simulation answered {line[:80]!r}; expected an object of JSON-RPC 2.0")
 
 
 class Channel:
@@ -40,7 +64,10 @@ class Channel:
         self._closed = False
         self._count = 0
         self._waiting = b""
-        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
+        try:
+            self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
+        except OSError as error:
+            raise ControllerGone(f"cannot be started: {error}; expected room for two sockets") from None
         try:
             self.child = Child(["control", f"fd:{theirs.fileno()}", *options], pass_fds=[theirs.fileno()],
                                folder=folder)
@@ -49,6 +76,13 @@ class Channel:
             raise
         finally:
             theirs.close()
+
+    def hello(self) -> dict[str, Any]:
+        """The first call, which is answered when the controller has started: what it is."""
+        try:
+            return self.call("hello", START_LIMIT, protocol=PROTOCOL)
+        except ValueError as error:  # of no argument of the caller's
+            raise ControllerGone(f"{error}: the command is of another version; see brick --version") from None
 
     def call(self, method: str, wall_limit: float, **params: Any) -> dict[str, Any]:
         """The result; a wall_limit of seconds, the wait for other threads' calls too, stands beside the parameters."""
@@ -78,7 +112,10 @@ class Channel:
             raise ControllerGone("the way to the controller is closed: by close(), or an exception in a transfer")
         request = {"jsonrpc": "2.0", "id": self._count + 1, "method": method,
                    "params": {**params, "wall_s": wall_limit}}
-        line = json.dumps(request, allow_nan=False).encode() + b"\n"
+        try:
+            line = json.dumps(request, allow_nan=False, ensure_ascii=False, default=_plain).encode() + b"\n"
+        except (TypeError, ValueError, RecursionError) as error:  # UnicodeEncodeError too
+            raise ValueError(f"{method}: {error}; expected texts in Unicode and finite numbers") from None
         self._count += 1
         self.calls.append((method, params))
         cut_off = True
@@ -128,7 +165,7 @@ class Channel:
     def _answer(self, limit: float) -> dict[str, Any]:
         """That of the last call; those of calls that an exception has cut off come before it and are dropped."""
         while True:
-            answer: dict[str, Any] = json.loads(self._line(limit))
+            answer = _read(self._line(limit))
             if answer["id"] in (self._count, None):  # None: the line was no request
                 return answer
 
@@ -163,6 +200,6 @@ class Channel:
         self._take(data)
         if code == _REFUSED:
             return CommandRefused(message, data["number"], data["line"], data["lines"][:-1])
-        if code == _BAD_PARAMETERS:
+        if code in _BAD_REQUEST:
             return ValueError(message)
         return _KINDS.get(code, BrickError)(message)

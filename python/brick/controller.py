@@ -2,38 +2,29 @@
 
 from __future__ import annotations
 
-import decimal
-import math
-import operator
 import os
 import pathlib
-import re
-import tempfile
 import time
 from collections.abc import Sequence
 from types import TracebackType
 from typing import Any
 
-from brick.channel import PROTOCOL, START_LIMIT, Channel
+from brick.arguments import digits, nanoseconds, run_options, seconds, texts, variable
+from brick.arguments import motor as need_motor
+from brick.channel import Channel
 from brick.errors import BrickError, ControllerGone, MotorOff, NoAnswer, RulesBroken, SimulatedTimeout, WallTimeout
-from brick.process import place
+from brick.process import folder_now, place, scratch
 from brick.record import Record
 from brick.replay import options_again, play, values
 
 WALL_LIMIT = 60.0  # seconds of the wall that a call may take, unless told otherwise
 _SEEN_BY = 20  # ms: what a command begins shows in the status by then (motion:6.6/1)
 _STATUS_EVERY = 1  # ms
-_VARIABLE = re.compile(r"[IPQM]\d{1,4}", re.IGNORECASE)
 _ENCODER = ("enc_a", "enc_b", "enc_c")
 _LIMITS = {"+": "plim", "-": "mlim"}
 RULES_BROKEN = 1  # exit status, of other failures too
 _FIVE_VOLTS = "watchdog.pwr_good"
 _CHANNELS = 4  # of a servo IC
-
-
-def run_options(**values: str | int | None) -> list[str]:
-    """Options of the command line, of those that have a value."""
-    return [f"--{name}={value}" for name, value in values.items() if value is not None]
 
 
 class Status:
@@ -97,18 +88,17 @@ class Controller:
                  engine: str | None = None, seed: int | None = None, wave: str | None = None,
                  realtime: bool = False, wall_limit: float = WALL_LIMIT, check: bool = True,
                  options: Sequence[str] = ()) -> None:
-        self.options = run_options(board=board, plant=plant, load=setup, engine=engine, seed=seed, wave=wave)
-        self.options += [*(["--realtime"] if realtime else []), *options]
-        self.wall_limit = wall_limit
+        self.wall_limit = seconds("wall_limit", wall_limit)
+        self.options = run_options(options, board=board, plant=plant, load=setup, engine=engine, seed=seed, wave=wave)
+        self.options += ["--realtime"] if realtime else []
         self._check = check
         self._closed = False
         # As it is now, for a replay: at the end it holds what was saved.
-        self._flash = next((pathlib.Path(file).read_bytes() for file in values(self.options, "--flash")
-                            if pathlib.Path(file).is_file()), None)
-        self._folder = os.getcwd()  # from which names of files in the options count, in a replay too
+        self._flash = next((_bytes(file) for file in values(self.options, "--flash")), None)
+        self._folder = folder_now()  # from which names of files in the options count, in a replay too
         self._channel = Channel(self.options)
         try:
-            self.about = self._channel.call("hello", START_LIMIT, protocol=PROTOCOL)
+            self.about = self._channel.hello()
         except BaseException:
             self._channel.close()
             raise
@@ -139,7 +129,7 @@ class Controller:
         if failures:
             raise RulesBroken(failures)
         if status != 0 and (self._check or status != RULES_BROKEN):
-            raise ControllerGone(f"{said} (exit status {status})")
+            raise ControllerGone(f"{said or 'the simulation has ended'} (exit status {status})")
 
     def abandon(self) -> None:
         """Ends the controller without a look at what it did."""
@@ -161,7 +151,10 @@ class Controller:
 
     def call(self, method: str, wall_limit: float | None = None, **params: Any) -> dict[str, Any]:
         """A method of docs/control.md as it stands there."""
-        return self._channel.call(method, self.wall_limit if wall_limit is None else wall_limit, **params)
+        return self._channel.call(method, self._limit(wall_limit), **params)
+
+    def _limit(self, wall_limit: float | None) -> float:
+        return seconds("wall_limit", self.wall_limit if wall_limit is None else wall_limit)
 
     # ---- Time: it passes in these and in commands
 
@@ -181,7 +174,7 @@ class Controller:
 
     def run(self, *, s: float = 0, ms: float = 0, us: float = 0, wall_limit: float | None = None) -> None:
         """Lets so much simulated time pass."""
-        self.call("run", wall_limit, ns=round(s * 1e9 + ms * 1e6 + us * 1e3))
+        self.call("run", wall_limit, ns=nanoseconds(s=s, ms=ms, us=us))
 
     # ---- The controller's language
 
@@ -195,14 +188,17 @@ class Controller:
 
     def script(self, text: str, wall_limit: float | None = None) -> list[str]:
         """Plays lines of a host script (docs/scripts.md): @dpram, @jumper, @reset, @power, ...; what it prints."""
-        folder = os.getcwd()
+        folder = folder_now()
         here = {} if folder == self._folder else {"folder": folder}
         lines: list[str] = self.call("script", wall_limit, text=text, **here)["lines"]
         return lines
 
     def load(self, file: str | os.PathLike[str], wall_limit: float | None = None) -> None:
         """Sends a command file. BrickError where a line of it is refused."""
-        refused = self.call("script", wall_limit, text=f'#include "{place(file)}"\n')
+        name = place(file)
+        if any(character in name for character in '"\r\n'):
+            raise ValueError(f"{name!r}: expected a name without quotation marks and line ends")
+        refused = self.call("script", wall_limit, text=f'#include "{name}"\n')
         if refused["refused"]:
             raise BrickError(f"{file}: {refused['refused']} lines refused: {' '.join(refused['lines'])}")
 
@@ -213,35 +209,33 @@ class Controller:
 
     def __getitem__(self, name: str) -> int | float:
         """A variable: c["P1"], c["I130"], as a number in whatever form I9 has it shown."""
-        line = self._variable(name)
+        return self._asked(variable(name))
+
+    def __setitem__(self, name: str, value: float) -> None:
+        self.command(f"{variable(name)}={digits(value)}")
+
+    def _asked(self, line: str) -> int | float:
         text = self.command(line)
         value = _number(text.removeprefix(f"{line}="))  # a statement where I9 is odd (firmware:1.6)
         if isinstance(value, str):
             raise NoAnswer(f"{line}: {text!r}; expected a number")
         return value
 
-    def __setitem__(self, name: str, value: float) -> None:
-        self.command(f"{self._variable(name)}={_digits(value)}")
-
-    @staticmethod
-    def _variable(name: str) -> str:
-        if not _VARIABLE.fullmatch(name):
-            raise ValueError(f"{name!r} is no variable; expected one like P1, Q20, M102 or I130")
-        return name.upper()
-
     # ---- Motors
 
     def position(self, motor: int) -> float:
         """Actual position in counts."""
-        return float(self.command(f"#{motor}P"))
+        return float(self._asked(f"#{need_motor(motor)}P"))
 
     def status(self, motor: int, wall_limit: float | None = None) -> Status:
         """Leaves the addressed motor as it is."""
-        word = 0x80 * motor
+        word = 0x80 * need_motor(motor)
         lines = self.command(f"RHX${word + 0x30:X} RHY${word + 0x40:X}", wall_limit).split()
-        if len(lines) != 2:
-            raise NoAnswer(f"status of motor {motor}: {lines}; expected two words")
-        return Status(int(lines[0], 16), int(lines[1], 16))
+        try:
+            word1, word2 = (int(line, 16) for line in lines)
+        except ValueError:
+            raise NoAnswer(f"status of motor {motor}: {lines}; expected two words") from None
+        return Status(word1, word2)
 
     def wait_in_position(self, *motors: int, ms: float = 10_000, wall_limit: float | None = None) -> None:
         """Until all of them are at rest and in position at once, asked once a simulated millisecond.
@@ -249,8 +243,8 @@ class Controller:
         What a command begins shows in the status within 20 ms, which are waited first. MotorOff where one is not
         enabled, SimulatedTimeout after `ms`, WallTimeout where the wait as a whole takes longer than the wall_limit.
         """
-        limit = self._channel.ns + round(ms * 1e6)
-        wall = time.monotonic() + (self.wall_limit if wall_limit is None else wall_limit)
+        limit = self._channel.ns + nanoseconds(ms=ms)
+        wall = time.monotonic() + self._limit(wall_limit)
         self.run(ms=min(_SEEN_BY, ms), wall_limit=_left(wall))
         while True:
             status = {motor: self.status(motor, _left(wall)) for motor in motors}
@@ -277,7 +271,7 @@ class Controller:
 
     def wait_signal(self, name: str, value: int | str, *, ms: float, wall_limit: float | None = None) -> None:
         """Until the signal shows the value. SimulatedTimeout after `ms`."""
-        self.call("until", wall_limit, name=name, value=str(value), ns=round(ms * 1e6))
+        self.call("until", wall_limit, name=name, value=str(value), ns=nanoseconds(ms=ms))
 
     def set_pin(self, name: str, level: int | None) -> None:
         """Drives an input pin, against the plant if that drives it; None gives it back."""
@@ -285,13 +279,14 @@ class Controller:
 
     def channel(self, motor: int) -> str:
         """Scope of the signals of a motor's channel, on boards whose ICs are fitted in order: servo_ic0.ch1."""
+        motor = need_motor(motor)
         return f"servo_ic{(motor - 1) // _CHANNELS}.ch{(motor - 1) % _CHANNELS + 1}"
 
     # ---- What can go wrong at the plant (docs/plant.md)
 
     def open_limit(self, motor: int, side: str, active: bool = True) -> None:
         """Opens the end switch "+" or "-" of a motor, as a cut wire does, or closes it."""
-        if side not in _LIMITS:
+        if side not in list(_LIMITS):  # it may have no hash
             raise ValueError(f"{side!r} is no side; expected + or -")
         self.set_pin(f"{self.channel(motor)}.{_LIMITS[side]}", 1 if active else None)
 
@@ -301,7 +296,7 @@ class Controller:
 
     def lose_encoder(self, motor: int, pins: Sequence[str] = _ENCODER) -> None:
         """Cuts wires of the encoder; no pins: all are whole again."""
-        self.call("plant.cut", motor=motor, pins=list(pins))
+        self.call("plant.cut", motor=motor, pins=texts("pins", pins))
 
     def set_load(self, motor: int, torque: float) -> None:
         """Torque on the shaft, N m."""
@@ -338,23 +333,34 @@ class Controller:
         """
         wave = place(wave)
         calls, errors, whole = list(self.calls), dict(self._channel.errors), self._channel.exact
-        with tempfile.TemporaryDirectory() as folder:
+        with scratch() as folder:
             options = [*options_again(self.options), *self._flash_options(folder), f"--wave={wave}"]
             again = Channel(options, self._folder)
             try:
-                again.call("hello", START_LIMIT, protocol=PROTOCOL)
+                again.hello()
                 play(lambda method, **params: again.call(method, self.wall_limit, **params), calls, errors, whole, wave)
             finally:
                 status, said = again.close()
         if status not in (0, RULES_BROKEN):
-            raise ControllerGone(f"{said} (exit status {status})")
+            raise ControllerGone(f"{said or 'the simulation has ended'} (exit status {status})")
 
     def _flash_options(self, folder: str) -> list[str]:
         if self._flash is None:
             return []
         copy = pathlib.Path(folder) / "flash"
-        copy.write_bytes(self._flash)
+        try:
+            copy.write_bytes(self._flash)
+        except OSError as error:
+            raise BrickError(f"replay: {error}; expected room for a flash file") from None
         return [f"--flash={copy}"]
+
+
+def _bytes(file: str) -> bytes | None:
+    """None where there are none: the command says what is wrong with the file."""
+    try:
+        return pathlib.Path(file).read_bytes() if pathlib.Path(file).is_file() else None
+    except (OSError, ValueError):
+        return None
 
 
 def _left(wall: float) -> float:
@@ -362,16 +368,6 @@ def _left(wall: float) -> float:
     if left <= 0:
         raise WallTimeout("the limit of wall time of the wait has passed")
     return left
-
-
-def _digits(value: float) -> str:
-    """As the controller takes numbers: all digits that tell this float from others, without an exponent."""
-    try:
-        return str(operator.index(value))  # type: ignore[arg-type]
-    except TypeError:
-        if not math.isfinite(value):
-            raise ValueError(f"{value!r} is no number for a variable; expected a finite one") from None
-        return f"{decimal.Decimal(repr(float(value))):f}".removesuffix(".0")
 
 
 def _number(text: str) -> int | float | str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import IO
 
 from brick.errors import BrickError, ControllerGone
@@ -35,9 +36,37 @@ def main() -> None:
     os.execv(program, [program, *sys.argv[1:]])
 
 
+def folder_now() -> str | None:
+    """In which the caller stands; None: one that is no more."""
+    try:
+        return os.getcwd()
+    except OSError:
+        return None
+
+
 def place(file: str | os.PathLike[str]) -> str:
     """The name in full, from the folder in which the caller stands now: the command stands where it was started."""
-    return str(pathlib.Path(file).absolute())
+    name = os.fspath(file) if isinstance(file, (str, os.PathLike)) else None
+    if not isinstance(name, str) or "\0" in name:
+        raise ValueError(f"{file!r} is no name of a file; expected a text or a path")
+    if not os.path.isabs(name) and folder_now() is None:
+        raise BrickError(f"{name}: the folder in which this process stands has gone; expected a name from /")
+    return str(pathlib.Path(name).absolute())
+
+
+@contextlib.contextmanager
+def scratch() -> Iterator[str]:
+    """A folder for as long. In a fork it stays, as it is not the fork's."""
+    try:
+        folder = tempfile.mkdtemp(prefix="brick-")
+    except OSError as error:
+        raise BrickError(f"{error}; expected room for a folder in {tempfile.gettempdir()}") from None
+    maker = os.getpid()
+    try:
+        yield folder
+    finally:
+        if os.getpid() == maker:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 class Child:
@@ -45,13 +74,19 @@ class Child:
 
     def __init__(self, arguments: Sequence[str], pass_fds: Sequence[int] = (), stdout: int = subprocess.DEVNULL,
                  folder: str | None = None) -> None:
-        self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115  until close()
-        self._last = ""  # what it had said by then
+        self._last = ""  # what it had said by close()
         self._starter = os.getpid()
         # The process is to end with this one, however this one ends, and not by a Ctrl-C that this one survives.
-        command = [executable(), *arguments, "--end-with", str(os.getpid())]
-        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=stdout, stderr=self._said,
-                                        pass_fds=pass_fds, process_group=0, cwd=folder)
+        command = [executable(), *arguments, "--end-with", str(self._starter)]
+        if any("\0" in word for word in command):
+            raise ValueError(f"{command[1:]}: a NUL in them; expected arguments of a command line")
+        try:
+            self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115  until close()
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=stdout, stderr=self._said,
+                                            pass_fds=pass_fds, process_group=0, cwd=folder)
+        except OSError as error:
+            raise ControllerGone(f"{command[0]}: cannot be started: {error}; expected the command brick, whose place "
+                                 "$BRICK may name") from None
 
     @property
     def ours(self) -> bool:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import csv
-import os
 import pathlib
-import shutil
-import tempfile
 from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
 from brick.errors import BrickError
+from brick.process import scratch
 
 
 class Record:
@@ -24,25 +22,23 @@ class Record:
     def __init__(self, call: Callable[..., Any], of: str, file: str | None) -> None:
         self._call = call
         self._of = of
-        self._folder: str | None = None  # of this record alone, while it lasts
+        self._folder = contextlib.ExitStack()  # of this record alone, while it lasts
         self._file = file
         self.names: list[str] = []
         self.rows: list[list[float]] = []
 
     def __enter__(self) -> Record:
-        if self._file is None:
-            self._folder = tempfile.mkdtemp(prefix="brick-")
-            self._maker = os.getpid()
-        self.file = pathlib.Path(self._file or f"{self._folder}/record.csv")
+        folder = self._folder.enter_context(scratch()) if self._file is None else ""
+        self.file = pathlib.Path(self._file or f"{folder}/record.csv")
         try:
             self._call("record.start", file=str(self.file), of=self._of)
         except (BrickError, ValueError):
-            self._remove()
+            self._folder.close()
             raise
         except BaseException:  # of a signal handler: the record may have begun, and would be in the way of the next
             with contextlib.suppress(BrickError, ValueError):
                 self._call("record.stop")
-            self._remove()
+            self._folder.close()
             raise
         return self
 
@@ -56,7 +52,7 @@ class Record:
                 raise
             error.add_note(f"record: {failure}")
         finally:
-            self._remove()
+            self._folder.close()
 
     def _read(self) -> None:
         try:
@@ -69,26 +65,29 @@ class Record:
 
     def __getitem__(self, name: str) -> list[float]:
         """A column, by its name; `time_ms` is the first."""
+        self._need_end()
         if name not in self.names:
-            raise KeyError(f"{name}: no such column; expected one of {', '.join(self.names)}")
+            raise ValueError(f"{name!r}: no such column; expected one of {', '.join(self.names)}")
         at = self.names.index(name)
         return [row[at] for row in self.rows]
+
+    def _need_end(self) -> None:
+        if not self.names:
+            raise BrickError("the record has no columns yet; expected the end of its with")
 
     def __len__(self) -> int:
         return len(self.rows)
 
     def array(self) -> Any:
         """All rows as a numpy array of two dimensions. Needs numpy."""
+        self._need_end()
         import numpy
 
         return numpy.array(self.rows, dtype=float).reshape(-1, len(self.names))
 
     def frame(self) -> Any:
         """A pandas frame with the time in ms as its index. Needs pandas."""
+        self._need_end()
         import pandas  # type: ignore[import-untyped, unused-ignore]
 
         return pandas.DataFrame(self.rows, columns=self.names).set_index("time_ms")
-
-    def _remove(self) -> None:
-        if self._folder is not None and os.getpid() == self._maker:  # a fork's record is not its own
-            shutil.rmtree(self._folder, ignore_errors=True)

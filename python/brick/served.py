@@ -8,8 +8,9 @@ import subprocess
 from collections.abc import Sequence
 from types import TracebackType
 
+from brick.arguments import run_options
 from brick.channel import START_LIMIT
-from brick.controller import RULES_BROKEN, run_options
+from brick.controller import RULES_BROKEN
 from brick.errors import ControllerGone, WallTimeout
 from brick.process import Child
 
@@ -23,11 +24,11 @@ class Served:
     def __init__(self, board: str | None = None, plant: str | None = None, setup: str | None = None, *,
                  engine: str | None = None, seed: int | None = None, wave: str | None = None, realtime: bool = False,
                  check: bool = True, options: Sequence[str] = ()) -> None:
-        chosen = run_options(board=board, plant=plant, load=setup, engine=engine, seed=seed, wave=wave)
+        chosen = run_options(options, board=board, plant=plant, load=setup, engine=engine, seed=seed, wave=wave)
         self._check = check
         self._closed = False
         pace = [] if realtime else ["--free"]
-        self._child = Child(["serve", "--listen", "127.0.0.1:0", *pace, *chosen, *options], stdout=subprocess.PIPE)
+        self._child = Child(["serve", "--listen", "127.0.0.1:0", *pace, *chosen], stdout=subprocess.PIPE)
         try:
             self.port = self._listening()
         except BaseException:
@@ -37,7 +38,9 @@ class Served:
 
     def _listening(self) -> int:
         assert self._child.process.stdout is not None
-        if not select.select([self._child.process.stdout], [], [], START_LIMIT)[0]:
+        waiting = select.poll()  # select() knows no number above 1023
+        waiting.register(self._child.process.stdout, select.POLLIN)
+        if not waiting.poll(START_LIMIT * 1e3):
             raise WallTimeout("brick serve does not listen")
         found = re.match(rb"listening on 127\.0\.0\.1:(\d+)", self._child.process.stdout.readline())
         if not found:
@@ -60,7 +63,7 @@ class Served:
         status = self._child.stop()
         said = self._child.close()
         if status != 0 and (self._check or status != RULES_BROKEN):
-            raise ControllerGone(f"{said} (exit status {status})")
+            raise ControllerGone(f"{said or 'brick serve has ended'} (exit status {status})")
 
     def __enter__(self) -> Served:
         return self
