@@ -302,7 +302,7 @@ module board_core #(
   logic       pic_sel, pic_wr, pic_rd, host_reset;
   logic [1:0] pic_addr;
   logic [7:0] pic_wdata, pic_rdata;
-  logic        mem_sel, mem_rd, mem_wr, mem_busy;
+  logic        mem_sel, mem_rd, mem_wr, mem_busy_d;
   logic [14:0] mem_addr;
   logic [1:0]  mem_be;
   logic [15:0] mem_wdata, mem_rdata;
@@ -334,7 +334,7 @@ module board_core #(
     .mem_be_o       (mem_be),
     .mem_wdata_o    (mem_wdata),
     .mem_rdata_i    (mem_rdata),
-    .mem_busy_i     (mem_busy)
+    .mem_busy_d_i   (mem_busy_d)
   );
 
   logic [23:0] int_rdata;
@@ -454,28 +454,28 @@ module board_core #(
   assign dpram_sel = pa_aa_i[2] & ~pa_int_i;
   dpram u_dpram (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
-    .small_i     (dpram_small_q),
-    .rd_falls_i  (rd_falls),
-    .wr_falls_i  (wr_falls),
-    .cpu_sel_i   (dpram_sel),
-    .cpu_x_i     (pa_x_i),
-    .cpu_addr_i  (pa_addr_i[13:0]),
-    .cpu_rd_ni   (pa_rd_ni),
-    .cpu_wr_ni   (pa_wr_ni),
-    .cpu_wdata_i (pa_wdata_i[15:0]),
-    .cpu_rdata_o (dpram_rdata),
-    .cpu_drive_o (dpram_drive),
-    .cpu_wait_o  (pa_ta_n_o),
-    .cpu_busy_o  (busy_cpu_o),
-    .mem_sel_i   (mem_sel),
-    .mem_rd_i    (mem_rd),
-    .mem_wr_i    (mem_wr),
-    .mem_addr_i  (mem_addr),
-    .mem_be_i    (mem_be),
-    .mem_wdata_i (mem_wdata),
-    .mem_rdata_o (mem_rdata),
-    .mem_busy_o  (mem_busy),
-    .host_busy_o (busy_host_o)
+    .small_i      (dpram_small_q),
+    .rd_falls_i   (rd_falls),
+    .wr_falls_i   (wr_falls),
+    .cpu_sel_i    (dpram_sel),
+    .cpu_x_i      (pa_x_i),
+    .cpu_addr_i   (pa_addr_i[13:0]),
+    .cpu_rd_ni    (pa_rd_ni),
+    .cpu_wr_ni    (pa_wr_ni),
+    .cpu_wdata_i  (pa_wdata_i[15:0]),
+    .cpu_rdata_o  (dpram_rdata),
+    .cpu_drive_o  (dpram_drive),
+    .cpu_wait_o   (pa_ta_n_o),
+    .cpu_busy_o   (busy_cpu_o),
+    .mem_sel_i    (mem_sel),
+    .mem_rd_i     (mem_rd),
+    .mem_wr_i     (mem_wr),
+    .mem_addr_i   (mem_addr),
+    .mem_be_i     (mem_be),
+    .mem_wdata_i  (mem_wdata),
+    .mem_rdata_o  (mem_rdata),
+    .mem_busy_d_o (mem_busy_d),
+    .host_busy_o  (busy_host_o)
   );
 
   // ------------------------------------------------------------------ read data towards the CPU

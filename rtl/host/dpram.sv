@@ -31,8 +31,8 @@ module dpram (
   input  wire logic [1:0]  mem_be_i,
   input  wire logic [15:0] mem_wdata_i,
   output logic [15:0]      mem_rdata_o,
-  output logic             mem_busy_o,
-  output logic             host_busy_o   // BUSY pin of the host side
+  output logic             mem_busy_d_o, // the next edge of clk_ref makes the host wait, or lets it wait on
+  output logic             host_busy_o   // BUSY pin of the host side: what that said at the last edge
 );
 
   // ---------------------------------------------------------------- CPU side, pins
@@ -133,9 +133,10 @@ module dpram (
   assign cpu_busy_o = busy_q;
 
   // ---------------------------------------------------------------- host side
-  logic        host_show_q, host_blocked, host_grant, host_here, host_we;
+  logic        host_show_q, host_blocked, host_grant, host_here, host_we, mem_busy_d;
   assign host_blocked = (own_q & (cell_q == mem_addr_i) & (own_wr_q | ~mem_rd_i)) | (request & conflict & ~mem_busy_q);
   assign host_grant   = mem_sel_i & ~host_own_q & ~host_blocked;
+  assign mem_busy_d   = mem_sel_i & ~host_own_q & host_blocked;
   assign host_here    = ~small_i | (mem_addr_i[14:13] == 2'b00);
   assign host_we      = mem_wr_i & host_own_q & host_here;
 
@@ -146,13 +147,13 @@ module dpram (
       host_show_q <= 1'b0;
     end else begin
       host_own_q <= mem_sel_i & (host_own_q | host_grant);
-      mem_busy_q <= mem_sel_i & ~host_own_q & host_blocked;
+      mem_busy_q <= mem_busy_d;
       if (host_grant && mem_rd_i) host_show_q <= host_here;
     end
   end
 
-  assign mem_busy_o  = mem_busy_q;
-  assign host_busy_o = mem_busy_q;
+  assign mem_busy_d_o = mem_busy_d;
+  assign host_busy_o  = mem_busy_q;
 
   // ---------------------------------------------------------------- memory
   logic [15:0] cpu_rdata, host_rdata;

@@ -55,8 +55,8 @@ module isa_slave (
   output logic [14:0]      mem_addr_o,
   output logic [1:0]       mem_be_o,
   output logic [15:0]      mem_wdata_o,
-  input  wire logic [15:0] mem_rdata_i,  // mem_busy_i and mem_rdata_i: from the clk_ref edge after mem_sel_o on
-  input  wire logic        mem_busy_i
+  input  wire logic [15:0] mem_rdata_i,  // from the clk_ref edge on that lets the host have the word
+  input  wire logic        mem_busy_d_i  // at an edge of clk_ref with mem_sel_o: the host waits behind it
 );
 
   // Commands are kept as 1 = active.
@@ -156,7 +156,9 @@ module isa_slave (
   } cycle_e;
   cycle_e      cycle_d, cycle_q;
   logic        active, finish;
-  logic        drive_q, asks_q;    // Show or Shown; Start of ours at the RAM: flip-flops, because they lead to pads
+  // Show or Shown; neither Start of ours at the RAM, nor the RAM busy: flip-flops, because they lead to pads. A master
+  // looks at IOCHRDY when it likes, so no logic stands behind that one: nothing shows between two reasons to wait.
+  logic        drive_q, iochrdy_q;
   logic [3:0]  kind_q, target_q;
   logic [1:0]  lanes_q, be_q, page_q;
   logic [14:0] mem_addr_q;
@@ -172,7 +174,7 @@ module isa_slave (
   assign ends     = active & (cmd2_q == 4'h0) & ~resetdrv;
   assign spoilt   = active & ((cmd2_q & ~kind_q) != 4'h0);  // a second command
   assign io_load  = (cycle_q == Start) & kind_q[Ior] & (target_q[Port] | target_q[Pic] | target_q[Other]);
-  assign mem_load = (cycle_q == Fetch) & ~mem_busy_i;
+  assign mem_load = (cycle_q == Fetch) & iochrdy_q;  // the RAM is not busy
   // RESETDRV that is seen at the end of a cycle or a clock after it makes it void (host-bus:3.8/3).
   assign takes_effect = finish & ~resetdrv;
 
@@ -210,7 +212,7 @@ module isa_slave (
     if (!rst_ni) begin
       cycle_q    <= Hold;
       drive_q    <= 1'b0;
-      asks_q     <= 1'b0;
+      iochrdy_q  <= 1'b1;
       kind_q     <= 4'h0;
       target_q   <= 4'h0;
       be_q       <= 2'b00;
@@ -221,9 +223,9 @@ module isa_slave (
       sd_q       <= 16'hFFFF;
       wdata_q    <= 16'h0;
     end else begin
-      cycle_q <= cycle_d;
-      drive_q <= (cycle_d == Show) | (cycle_d == Shown);
-      asks_q  <= (cycle_d == Start) & decoded[Memory];
+      cycle_q   <= cycle_d;
+      drive_q   <= (cycle_d == Show) | (cycle_d == Shown);
+      iochrdy_q <= ~(((cycle_d == Start) & decoded[Memory]) | mem_busy_d_i);
       if (start) begin
         kind_q     <= cmd2_q;
         target_q   <= decoded;
@@ -280,7 +282,7 @@ module isa_slave (
   assign read_low = ((kind_q[Ior] & ~isa_ior_ni) | (kind_q[Memr] & ~isa_memr_ni)) & isa_iow_ni & isa_memw_ni;
   assign isa_sd_o       = sd_q;
   assign isa_sd_oe_o    = lanes_q & {2{drive_q & read_low}};
-  assign isa_iochrdy_o  = ~(asks_q | mem_busy_i);
+  assign isa_iochrdy_o  = iochrdy_q;
   assign isa_memcs16_no = ~la_hit_q[0];
 
 endmodule : isa_slave

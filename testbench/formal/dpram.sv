@@ -31,6 +31,9 @@
 // fault R10: /TA falls with the data (rtl/host/dpram.sv)
 //   - (rd_falls_i != rd_ack_q)
 //   + (rd_falls_i != rd_done_q)
+// fault R11: the host hears of BUSY when it begins, not before (rtl/host/dpram.sv)
+//   - assign mem_busy_d_o = mem_busy_d;
+//   + assign mem_busy_d_o = mem_busy_q;
 `default_nettype none
 
 module dpram_rules (
@@ -63,7 +66,7 @@ module dpram_rules (
   assign skew = (late != 6'd0) ? 4'd2 : 4'd0;
 
   logic [1:0]  rd_falls, wr_falls;
-  logic        cpu_drive, cpu_wait, cpu_busy, host_busy, host_busy_pin;
+  logic        cpu_drive, cpu_wait, cpu_busy, host_busy, host_busy_d;
   logic [15:0] rdata, host_rdata;
   bus_strobes strobes (.rst_ni, .pa_rd_ni(there[5]), .pa_wr_ni(there[4]), .rd_falls_o(rd_falls),
                        .wr_falls_o(wr_falls));
@@ -73,8 +76,8 @@ module dpram_rules (
              .cpu_drive_o(cpu_drive), .cpu_wait_o(cpu_wait), .cpu_busy_o(cpu_busy),
              .mem_sel_i(host_sel_i), .mem_rd_i(host_rd_i), .mem_wr_i(host_wr_i),
              .mem_addr_i({13'd0, host_addr_i}), .mem_be_i(host_be_i),
-             .mem_wdata_i({16{host_wdata_i}}), .mem_rdata_o(host_rdata), .mem_busy_o(host_busy),
-             .host_busy_o(host_busy_pin));
+             .mem_wdata_i({16{host_wdata_i}}), .mem_rdata_o(host_rdata),
+             .mem_busy_d_o(host_busy_d), .host_busy_o(host_busy));
   // From inside the ports of the memory, and nothing of the arbiter.
   (* hierconn *) wire logic        \dut.u_memory.a_we_i ;
   (* hierconn *) wire logic        \dut.u_memory.a_re_i ;
@@ -157,6 +160,9 @@ module dpram_rules (
     ended_q      <= host_busy & (ended_q | (rd_ni & wr_ni));
     host_steps_q <= !(host_busy && ended_q) ? 5'd0 : host_steps_q + {4'd0, host_steps_q != 5'd31};
   end
+
+  logic told_q = 1'b0;  // what stood at the last edge of clk_ref
+  always @($global_clock) if (edge_ref) told_q <= host_busy_d;
 
   logic touch_a, touch_b, write_a, write_b;
   assign write_a = \dut.u_memory.a_we_i ;
@@ -259,6 +265,10 @@ module dpram_rules (
       R10: assert (cpu_drive && drive_q == 2'b11);
       C10: cover (low_q == Settled);
     end
+
+    // R11: The host is BUSY between two edges of clk_ref if the first of them was told so: isa_slave takes it there.
+    R11: assert (host_busy == told_q);
+    C11: cover (told_q && ended_q);
   end
 
 endmodule : dpram_rules

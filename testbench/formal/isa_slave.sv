@@ -1,6 +1,6 @@
 // Rules of the ISA slave towards the bus and towards what stands behind it, host-bus:3.4, host-bus:3.8, host-bus:3.9. A
 // step is half a period of clk_pwm, 4.2 ns; a pin may change at any, and an edge takes what stood a step before it. R1
-// to R5, R7 to R9 hold for any pins. R6 is about hosts that have been sound so far: one command at a time, high for 24
+// to R5, R7 to R10 hold for any pins. R6 is about hosts that have been sound so far: one command at a time, high for 24
 // steps between two (host-bus:3.4, row 11: 170 ns) and low for 8 or more, write data standing from 5 steps after the
 // fall (row 6) to the rise, no RESETDRV. Switches stand. Of the data two bits are followed, one of each lane.
 // proof: pdr
@@ -27,6 +27,9 @@
 // fault R9: a read acknowledges before its data are on the bus (rtl/host/isa_slave.sv)
 //   - target_q[Pic] & (cycle_q == Show) & kind_q[Ior] & (cmd2_q == kind_q)
 //   + target_q[Pic] & (cycle_q == Start) & kind_q[Ior] & (cmd2_q == kind_q)
+// fault R10: IOCHRDY does not wait for the RAM (rtl/host/isa_slave.sv)
+//   - iochrdy_q <= ~(((cycle_d == Start) & decoded[Memory]) | mem_busy_d_i);
+//   + iochrdy_q <= ~((cycle_d == Start) & decoded[Memory]);
 `default_nettype none
 
 module isa_slave_rules (
@@ -41,7 +44,7 @@ module isa_slave_rules (
   input wire logic [7:0]  hp_rdata_i,
   input wire logic [7:0]  pic_rdata_i,
   input wire logic [15:0] mem_rdata_i,
-  input wire logic        mem_busy_i
+  input wire logic        mem_busy_d_i
 );
 
   logic       clk_pwm, clk_ref, edge_pwm, edge_ref;
@@ -72,7 +75,7 @@ module isa_slave_rules (
                  .hp_wdata_o(hp_wdata), .hp_rdata_i, .pic_sel_o(pic_sel), .pic_rd_o(pic_rd), .pic_wr_o(pic_wr),
                  .pic_addr_o(pic_addr), .pic_wdata_o(pic_wdata), .pic_rdata_i, .mem_sel_o(mem_sel), .mem_rd_o(mem_rd),
                  .mem_wr_o(mem_wr), .mem_addr_o(mem_addr), .mem_be_o(mem_be), .mem_wdata_o(mem_wdata), .mem_rdata_i,
-                 .mem_busy_i);
+                 .mem_busy_d_i);
 
   // ---------------------------------------------------------------- the bus as a host drives it
   logic        started_q = 1'b0, sound_q = 1'b1, two, idle, fall, rise;
@@ -142,6 +145,10 @@ module isa_slave_rules (
     if (edge_ref) {mem_sel_q, mem_rd_q, mem_addr_q, mem_be_q} <= {mem_sel, mem_rd, mem_addr, mem_be};
   end
 
+  // What the RAM said at the last edge of clk_ref: BUSY, or not.
+  logic busy_q = 1'b0;
+  always @($global_clock) if (edge_ref) busy_q <= rst_ni && mem_busy_d_i;
+
   always @($global_clock) if (rst_ni) begin
     // R1: SD is driven only while a read command is low and no write command is.
     if (oe != 2'b00) begin
@@ -203,6 +210,10 @@ module isa_slave_rules (
       R9: assert (shown_q);
       C9: cover (oe == 2'b00);
     end
+
+    // R10: IOCHRDY is low in the first clock of an access to the RAM and while that is BUSY, and never else.
+    R10: assert (ready == !((mem_sel && \dut.cycle_q == 3'd1) || busy_q));
+    C10: cover (busy_q && mem_sel && \dut.cycle_q == 3'd2);
   end
 
 endmodule : isa_slave_rules

@@ -24,7 +24,6 @@ module dpram_pins (
   input  wire logic [1:0]  mem_be_i,
   input  wire logic [15:0] mem_wdata_i,
   output logic [15:0]      mem_rdata_o,
-  output logic             mem_busy_o,
   output logic             host_busy_o,
   input  wire logic [15:0] start_i[32768],
   input  wire logic [14:0] peek_addr_i,
@@ -32,7 +31,7 @@ module dpram_pins (
 );
 
   logic [1:0] rd_falls, wr_falls;
-  logic       unused_drive;
+  logic       unused_drive, unused_busy;
 
   bus_strobes u_bus_strobes (
     .rst_ni, .pa_rd_ni(cpu_rd_ni), .pa_wr_ni(cpu_wr_ni),
@@ -44,7 +43,7 @@ module dpram_pins (
     .cpu_sel_i, .cpu_x_i, .cpu_addr_i, .cpu_rd_ni, .cpu_wr_ni, .cpu_wdata_i,
     .cpu_rdata_o, .cpu_drive_o(unused_drive), .cpu_wait_o, .cpu_busy_o,
     .mem_sel_i, .mem_rd_i, .mem_wr_i, .mem_addr_i, .mem_be_i, .mem_wdata_i,
-    .mem_rdata_o, .mem_busy_o, .host_busy_o
+    .mem_rdata_o, .mem_busy_d_o(unused_busy), .host_busy_o
   );
 
   initial begin

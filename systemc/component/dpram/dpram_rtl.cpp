@@ -39,7 +39,7 @@ struct Ports : PortMap {
     v.eval();  // the strobes clock flip-flops
   }
   static bool after(const Module& v, unsigned number, Face& face) {
-    return number == kHost ? dpram_cycle::host_after(face, v.mem_busy_o, v.mem_rdata_o)
+    return number == kHost ? dpram_cycle::host_after(face, v.host_busy_o, v.mem_rdata_o)
                            : dpram_cycle::cpu_after(face, v.cpu_wait_o, v.cpu_rdata_o);
   }
   static std::uint32_t read(const Module&, unsigned, unsigned) { return 0; }  // the word comes with a later edge

@@ -59,7 +59,7 @@ TEST_F(DpramResetTest, ReadWordsAreZeroAndNobodyOwnsAWord) {
     both.in.mem_sel = false;
     both.in.rd_falls = both.in.wr_falls = 0;  // the counts are reset with it
     both.reset();
-    for (const char* output : {"cpu_rdata", "cpu_wait", "cpu_busy", "mem_rdata", "mem_busy", "host_busy", "cpu_drive"})
+    for (const char* output : {"cpu_rdata", "cpu_wait", "cpu_busy", "mem_rdata", "host_busy", "cpu_drive"})
       EXPECT_EQ(both.get(output), 0u) << output;
     EXPECT_EQ(cpu_read(6), 0x1234u) << "at once";
   }

@@ -15,9 +15,8 @@ class DpramBench {
  public:
   explicit DpramBench(bool small = false, int seed = 0)
       : model("dpram"), both(make_rtl_dpram(seed), model, [](const Dpram& m) {
-          return Outputs{{"cpu_rdata", m.cpu_rdata()}, {"cpu_wait", m.cpu_wait()}, {"cpu_busy", m.cpu_busy()},
-                         {"mem_rdata", m.mem_rdata()}, {"mem_busy", m.mem_busy()}, {"host_busy", m.host_busy()},
-                         {"cpu_drive", m.cpu_drive()}};
+          return Outputs{{"cpu_rdata", m.cpu_rdata()}, {"cpu_wait", m.cpu_wait()},   {"cpu_busy", m.cpu_busy()},
+                         {"mem_rdata", m.mem_rdata()}, {"host_busy", m.host_busy()}, {"cpu_drive", m.cpu_drive()}};
         }) {
     both.in.small = small;
   }

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "systemc/host/isa_slave.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/host/answered_isa_slave.h"
 #include "testbench/unit/host/lockstep.h"
 #include "testbench/unit/random_seed.h"
 
@@ -14,7 +14,7 @@ namespace brick {
 
 class IsaBench {
  public:
-  using Inputs = IsaSlave::Inputs;
+  using Inputs = AnsweredIsaSlave::Inputs;
 
   // `on_a_board`: as a board has it, which takes no notice of the ends of most reads (systemc/host/isa_slave.h).
   explicit IsaBench(bool on_a_board = false)
@@ -24,7 +24,8 @@ class IsaBench {
     both.ticks(12);  // switches are taken over, the bus is idle
   }
 
-  static Outputs show(const IsaSlave& m) {
+  static Outputs show(const AnsweredIsaSlave& block) {
+    const IsaSlave& m = block.slave();
     return Outputs{{"isa_sd", m.isa_sd()},
                    {"isa_iochrdy", m.isa_iochrdy()},
                    {"isa_memcs16_n", m.isa_memcs16_n()},
@@ -48,10 +49,10 @@ class IsaBench {
                    {"mem_be", m.mem_be()},
                    {"mem_wdata", m.mem_wdata()}};
   }
-  static Outputs show_on_a_board(const IsaSlave& m) { return seen_by_a_board(show(m)); }
+  static Outputs show_on_a_board(const AnsweredIsaSlave& m) { return seen_by_a_board(show(m)); }
 
-  IsaSlave model;
-  Lockstep<IsaSlave> both;
+  AnsweredIsaSlave model;
+  Lockstep<AnsweredIsaSlave> both;
 
   // What a block behind the slave saw at a clk_ref edge.
   struct Strobe {
@@ -159,7 +160,7 @@ class IsaBench {
       if (random() % 64 == 0) in.isa_la = static_cast<std::uint8_t>(random() % 0x80);  // a host may let go of it early
       // The memory rests while it is not asked, but for a while in between.
       if (both.now() % kTicksPerRef == 0 && (both.get("mem_sel") != 0 || both.now() % 1000 < 100)) {
-        in.mem_busy = random() % 3 == 0;  // also at the end of a command, where it is one clock late
+        in.mem_busy_d = random() % 3 == 0;  // also at the end of a command, when it has no part in it any more
         in.mem_rdata = static_cast<std::uint16_t>(random());
       }
       tick();

@@ -206,13 +206,17 @@ TEST_F(IsaSlaveTest, IochrdyIsLowWhileTheMemoryIsBusyAndDataFollows) {
   set_address(0xD0000);
   both.ref(4);
   both.in.isa_memr_n = false;
-  both.ref(2);
+  both.ref();
   ASSERT_EQ(both.get("mem_sel"), 1u);
-  both.in.mem_busy = true;  // the memory's answer after the edge that saw the request
-  both.ref(4);
+  both.in.mem_busy_d = true;  // the memory's answer at the edge that sees the request
+  for (int n = 0; n < 15; ++n) {
+    EXPECT_EQ(both.get("isa_iochrdy"), 0u) << "tick " << n;
+    tick();
+  }
   EXPECT_EQ(both.get("isa_iochrdy"), 0u);
   EXPECT_EQ(both.get("isa_sd_oe"), 0u) << "no data yet";
-  both.in.mem_busy = false;
+  both.in.mem_busy_d = false;
+  both.ref();
   both.in.mem_rdata = 0x2222;
   EXPECT_EQ(both.get("isa_iochrdy"), 1u);
   both.ref();

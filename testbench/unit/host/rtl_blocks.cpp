@@ -101,12 +101,11 @@ void drive(Vdpram& v, const DpramInputs& in) {
   v.mem_wdata_i = in.mem_wdata;
 }
 Outputs sample(const Vdpram& v) {
-  return {{"cpu_rdata", v.cpu_rdata_o}, {"cpu_wait", v.cpu_wait_o}, {"cpu_busy", v.cpu_busy_o},
-          {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o}, {"host_busy", v.host_busy_o},
-          {"cpu_drive", v.cpu_drive_o}};
+  return {{"cpu_rdata", v.cpu_rdata_o}, {"cpu_wait", v.cpu_wait_o},   {"cpu_busy", v.cpu_busy_o},
+          {"mem_rdata", v.mem_rdata_o}, {"host_busy", v.host_busy_o}, {"cpu_drive", v.cpu_drive_o}};
 }
 
-void drive(Visa_slave& v, const IsaSlaveInputs& in) {
+void drive(Visa_slave& v, const AnsweredInputs& in) {
   v.isa_la_i = in.isa_la;
   v.isa_sa_i = in.isa_sa;
   v.isa_sd_i = in.isa_sd;
@@ -125,7 +124,7 @@ void drive(Visa_slave& v, const IsaSlaveInputs& in) {
   v.hp_rdata_i = in.hp_rdata;
   v.pic_rdata_i = in.pic_rdata;
   v.mem_rdata_i = in.mem_rdata;
-  v.mem_busy_i = in.mem_busy;
+  v.mem_busy_d_i = in.mem_busy_d;
 }
 Outputs sample(const Visa_slave& v) {
   return {{"isa_sd", v.isa_sd_o},
@@ -172,10 +171,10 @@ RtlBlock<HostPortInputs, Outputs> make_rtl_host_port() {
 RtlBlock<DpramInputs, Outputs> make_rtl_dpram(int seed) {
   return verilated_shell<Vdpram, DpramInputs, Outputs>(drive, sample, seed);
 }
-RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave(bool on_a_board) {
+RtlBlock<AnsweredInputs, Outputs> make_rtl_isa_slave(bool on_a_board) {
   const auto seen = [](const Visa_slave& v) { return seen_by_a_board(sample(v)); };
-  return on_a_board ? verilated_shell<Visa_slave, IsaSlaveInputs, Outputs>(drive, +seen)
-                    : verilated_shell<Visa_slave, IsaSlaveInputs, Outputs>(drive, sample);
+  return on_a_board ? verilated_shell<Visa_slave, AnsweredInputs, Outputs>(drive, +seen)
+                    : verilated_shell<Visa_slave, AnsweredInputs, Outputs>(drive, sample);
 }
 
 Outputs seen_by_a_board(Outputs outputs) {
