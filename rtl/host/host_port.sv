@@ -61,16 +61,28 @@ module host_port (
   assign init          = host_wr & (hp_addr_i == Icr) & hp_wdata_i[brick_regs_pkg::HostIoIcrInitLsb];
 
   // ---------------------------------------------------------------- registers
-  logic [7:0]  icr_q, cvr_q, ivr_q;
-  logic [23:0] hcr_q, hpcr_q, hbar_q;
+  logic [7:0]  icr_d, icr_q, cvr_d, cvr_q, ivr_q;
+  logic [23:0] hcr_d, hcr_q, hpcr_q, hbar_q;
   logic [23:0] tx_q, horx_q, hotx_q, rx_q;
   logic        txde_d, txde_q, hrdf_d, hrdf_q, htde_d, htde_q, rxdf_d, rxdf_q;
-  logic        rreq, treq, hlend, hc, tx_move, rx_move;
+  logic        hlend, tx_move, rx_move, hreq_d, hreq_q, irq_d, irq_q;
   logic        saw_q;  // the read under way found a word in RX
-  assign rreq  = icr_q[brick_regs_pkg::HostIoIcrRreqLsb];
-  assign treq  = icr_q[brick_regs_pkg::HostIoIcrTreqLsb];
   assign hlend = icr_q[brick_regs_pkg::HostIoIcrHlendLsb];
-  assign hc    = cvr_q[brick_regs_pkg::HostIoCvrHcLsb];
+
+  // A command written at the moment of taking is another one.
+  always_comb begin
+    icr_d = icr_q;
+    cvr_d = cvr_q;
+    hcr_d = hcr_q;
+    if (command_taken) cvr_d[brick_regs_pkg::HostIoCvrHcLsb] = 1'b0;
+    if (host_wr && hp_addr_i == Icr) icr_d = hp_wdata_i & IcrKept;
+    if (host_wr && hp_addr_i == Cvr) cvr_d = hp_wdata_i;
+    if (hp_reset_i) begin
+      icr_d = brick_regs_pkg::HostIoIcrReset;
+      cvr_d = brick_regs_pkg::HostIoCvrReset;
+    end
+    if (cpu_wr && dsp_addr_i == Hcr) hcr_d = dsp_wdata_i & brick_regs_pkg::Hi08HcrWritten;
+  end
 
   // ---------------------------------------------------------------- flags
   // A read frees only what was full, one of the host what was full when its byte was taken; INIT and RESETDRV come
@@ -92,8 +104,16 @@ module host_port (
     end
   end
 
+  // Requests are flip-flops: whoever looks at the pins sees nothing of a flag that goes while another comes.
+  assign hreq_d = (icr_d[brick_regs_pkg::HostIoIcrRreqLsb] & rxdf_d) |
+                  (icr_d[brick_regs_pkg::HostIoIcrTreqLsb] & txde_d);
+  assign irq_d  = (hcr_d[brick_regs_pkg::Hi08HcrHrieLsb] & hrdf_d) | (hcr_d[brick_regs_pkg::Hi08HcrHtieLsb] & htde_d) |
+                  (hcr_d[brick_regs_pkg::Hi08HcrHcieLsb] & cvr_d[brick_regs_pkg::HostIoCvrHcLsb]);
+
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
+      hreq_q <= 1'b0;
+      irq_q  <= 1'b0;
       icr_q  <= brick_regs_pkg::HostIoIcrReset;
       cvr_q  <= brick_regs_pkg::HostIoCvrReset;
       ivr_q  <= brick_regs_pkg::HostIoIvrReset;
@@ -110,6 +130,11 @@ module host_port (
       hrdf_q <= brick_regs_pkg::Hi08HsrReset[brick_regs_pkg::Hi08HsrHrdfLsb];
       htde_q <= brick_regs_pkg::Hi08HsrReset[brick_regs_pkg::Hi08HsrHtdeLsb];
     end else begin
+      hreq_q <= hreq_d;
+      irq_q  <= irq_d;
+      icr_q  <= icr_d;
+      cvr_q  <= cvr_d;
+      hcr_q  <= hcr_d;
       txde_q <= txde_d;
       hrdf_q <= hrdf_d;
       htde_q <= htde_d;
@@ -118,11 +143,8 @@ module host_port (
       if (tx_move) horx_q <= tx_q;
       if (rx_move) rx_q <= hotx_q;
       if (hotx_write) hotx_q <= dsp_wdata_i;
-      if (command_taken) cvr_q[brick_regs_pkg::HostIoCvrHcLsb] <= 1'b0;
       if (host_wr) begin
         case (hp_addr_i)
-          Icr:     icr_q <= hp_wdata_i & IcrKept;
-          Cvr:     cvr_q <= hp_wdata_i;
           Ivr:     ivr_q <= hp_wdata_i;
           Data6:   tx_q[15:8] <= hp_wdata_i;
           Data5:   if (hlend) tx_q[7:0]   <= hp_wdata_i; else tx_q[23:16] <= hp_wdata_i;
@@ -130,14 +152,9 @@ module host_port (
           default: ;
         endcase
       end
-      if (hp_reset_i) begin
-        icr_q <= brick_regs_pkg::HostIoIcrReset;
-        cvr_q <= brick_regs_pkg::HostIoCvrReset;
-        ivr_q <= brick_regs_pkg::HostIoIvrReset;
-      end
+      if (hp_reset_i) ivr_q <= brick_regs_pkg::HostIoIvrReset;
       if (cpu_wr) begin
         case (dsp_addr_i)
-          Hcr:     hcr_q  <= dsp_wdata_i & brick_regs_pkg::Hi08HcrWritten;
           Hpcr:    hpcr_q <= dsp_wdata_i & brick_regs_pkg::Hi08HpcrWritten;
           Hbar:    hbar_q <= dsp_wdata_i & brick_regs_pkg::Hi08HbarWritten;
           default: ;
@@ -150,9 +167,8 @@ module host_port (
   assign rxdf_o = rxdf_q;
 
   // ---------------------------------------------------------------- what the two sides read
-  assign hreq_o = (rreq & rxdf_q) | (treq & txde_q);
-  assign irq_o  = (hcr_q[brick_regs_pkg::Hi08HcrHrieLsb] & hrdf_q) | (hcr_q[brick_regs_pkg::Hi08HcrHtieLsb] & htde_q) |
-                  (hcr_q[brick_regs_pkg::Hi08HcrHcieLsb] & hc);
+  assign hreq_o = hreq_q;
+  assign irq_o  = irq_q;
 
   always_comb begin
     hp_rdata_o = 8'h00;
@@ -169,7 +185,7 @@ module host_port (
         hp_rdata_o[brick_regs_pkg::HostIoIsrTrdyLsb] = txde_q & ~hrdf_q;
         hp_rdata_o[brick_regs_pkg::HostIoIsrHf2Lsb]  = hcr_q[brick_regs_pkg::Hi08HcrHf2Lsb];
         hp_rdata_o[brick_regs_pkg::HostIoIsrHf3Lsb]  = hcr_q[brick_regs_pkg::Hi08HcrHf3Lsb];
-        hp_rdata_o[brick_regs_pkg::HostIoIsrHreqLsb] = hreq_o;
+        hp_rdata_o[brick_regs_pkg::HostIoIsrHreqLsb] = hreq_q;
       end
       default: ;
     endcase
@@ -182,7 +198,7 @@ module host_port (
       Hsr: begin
         dsp_rdata_o[brick_regs_pkg::Hi08HsrHrdfLsb] = hrdf_q;
         dsp_rdata_o[brick_regs_pkg::Hi08HsrHtdeLsb] = htde_q;
-        dsp_rdata_o[brick_regs_pkg::Hi08HsrHcpLsb]  = hc;
+        dsp_rdata_o[brick_regs_pkg::Hi08HsrHcpLsb]  = cvr_q[brick_regs_pkg::HostIoCvrHcLsb];
         dsp_rdata_o[brick_regs_pkg::Hi08HsrHf0Lsb]  = icr_q[brick_regs_pkg::HostIoIcrHf0Lsb];
         dsp_rdata_o[brick_regs_pkg::Hi08HsrHf1Lsb]  = icr_q[brick_regs_pkg::HostIoIcrHf1Lsb];
         dsp_rdata_o[brick_regs_pkg::Hi08HsrHvLsb +: brick_regs_pkg::Hi08HsrHvWidth] =
