@@ -268,10 +268,12 @@ module board_core #(
     .conflict_o  (source_conflict_o)
   );
 
+  logic wd_trips;
   watchdog u_watchdog (
     .clk_ref_i, .rst_ni,
     .strobe_i (bus_we & sel_strobe),
     .servo_i, .pwr_good_i,
+    .trip_d_o (wd_trips),
     .trip_o   (wd_tripped_o),
     .relay_o  (wd_relay_o)
   );
@@ -360,19 +362,17 @@ module board_core #(
     .rxdf_o        (port_rxdf_o)
   );
 
-  // A trip turns the control outputs off at once, as all others; a clock later their latch is empty, so that nothing
-  // comes back with the reset.
+  // A trip empties the latch of the control outputs with the edge that trips, so that they go off with all others, as
+  // flip-flops, and nothing comes back with the reset.
   logic [3:0] signals_rdata;
-  logic [1:0] ctrl_latch;
-  assign ctrl_o = ctrl_latch & {2{~wd_tripped_o}};
   host_signals u_host_signals (
     .clk_ref_i, .rst_ni,
-    .trip_i    (wd_tripped_o),
+    .trip_i    (wd_trips),
     .wr_i      (bus_we & sel_signals),
     .ctrl_wr_i (bus_we & sel_ctrl),
     .wdata_i   (bus_wdata[3:0]),
     .rdata_o   (signals_rdata),
-    .ctrl_o    (ctrl_latch),
+    .ctrl_o,
     .ipos_o, .breq_o, .eror_o, .f1er_o
   );
 

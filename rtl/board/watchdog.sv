@@ -10,6 +10,7 @@ module watchdog (
   input  wire logic strobe_i,  // one clk_ref: any write to X:$070011
   input  wire logic servo_i,
   input  wire logic pwr_good_i,  // a pin: 5 V is good
+  output logic      trip_d_o,    // from the next edge on it has tripped
   output logic      trip_o,
   output logic      relay_o      // 1 energised
 );
@@ -58,8 +59,9 @@ module watchdog (
     end
   end
 
-  assign trip_o  = trip_q;
-  assign relay_o = relay_q;
+  assign trip_d_o = trip_d;
+  assign trip_o   = trip_q;
+  assign relay_o  = relay_q;
 
 endmodule : watchdog
 

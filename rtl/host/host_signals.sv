@@ -7,7 +7,7 @@
 module host_signals (
   input  wire logic       clk_ref_i,
   input  wire logic       rst_ni,
-  input  wire logic       trip_i,     // of the watchdog
+  input  wire logic       trip_i,     // of the watchdog: has tripped, or trips at the edge to come
   input  wire logic       wr_i,       // one clk_ref
   input  wire logic       ctrl_wr_i,  // one clk_ref
   input  wire logic [3:0] wdata_i,

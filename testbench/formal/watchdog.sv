@@ -13,6 +13,9 @@
 // fault R5: the supply trips before it has passed two flip-flops (rtl/board/watchdog.sv)
 //   - trip_d        = trip_q | ~good;
 //   + trip_d        = trip_q | ~good | ~pwr_good_i;
+// fault R6: what waits for the trip hears of it when it is there (rtl/board/watchdog.sv)
+//   - assign trip_d_o = trip_d;
+//   + assign trip_d_o = trip_q;
 `default_nettype none
 
 module watchdog_rules (
@@ -26,8 +29,9 @@ module watchdog_rules (
   localparam logic [20:0] Least = 21'd959 * 21'd1024 + 21'd1;  // edges of clk_ref from a reload to the trip
   localparam logic [20:0] Most  = 21'd960 * 21'd1024;
 
-  logic trip, relay;
-  watchdog dut (.clk_ref_i(clk_i), .rst_ni, .strobe_i, .servo_i, .pwr_good_i(good_i), .trip_o(trip), .relay_o(relay));
+  logic trips, trip, relay;
+  watchdog dut (.clk_ref_i(clk_i), .rst_ni, .strobe_i, .servo_i, .pwr_good_i(good_i), .trip_d_o(trips), .trip_o(trip),
+                .relay_o(relay));
   // From inside, for the induction: edges to the trip of either timer.
   (* hierconn *) wire logic [9:0]  \dut.prescale_q ;
   (* hierconn *) wire logic [15:0] \dut.strobe_left_q , \dut.servo_left_q ;
@@ -39,14 +43,14 @@ module watchdog_rules (
   assign servo_to_go  = {1'b0, \dut.servo_left_q [9:0], 10'd0} - {11'd0, \dut.prescale_q };
 
   // Edges since the last strobe, the last edge of SERVO, behind two flip-flops; the pins an edge and two ago.
-  logic        started_q = 1'b0, trip_q = 1'b0;
+  logic        started_q = 1'b0, trip_q = 1'b0, trips_q = 1'b0;
   logic [1:0]  servo_q, good_q, edges_q;
   logic [20:0] strobe_age_q, servo_age_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       {strobe_age_q, servo_age_q} <= 42'd0;
       {servo_q, good_q}           <= 4'b1111;
-      trip_q                      <= 1'b0;
+      {trip_q, trips_q}           <= 2'b00;
       edges_q                     <= 2'd0;
     end else begin
       strobe_age_q <= strobe_i ? 21'd0 : strobe_age_q + 21'd1;
@@ -54,6 +58,7 @@ module watchdog_rules (
       servo_q      <= {servo_q[0], servo_i};
       good_q       <= {good_q[0], good_i};
       trip_q       <= trip;
+      trips_q      <= trips;
       if (edges_q != 2'd3) edges_q <= edges_q + 2'd1;
     end
   end
@@ -97,6 +102,12 @@ module watchdog_rules (
       if (!trip_q && !dead_q && strobe_age_q < Least && servo_age_q < Least) begin
         R5: assert (!trip);
         C5: cover (strobe_age_q == 21'd9);
+      end
+
+      // R6: What waits for the trip hears of it an edge before.
+      if (trip != trip_q) begin
+        R6: assert (trip == trips_q);
+        C6: cover (strobe_age_q == 21'd7);
       end
 
       // I1: What is to go and what has passed make 959 to 960 periods, of which the first is a part.
