@@ -26,6 +26,7 @@ brick_add_check(lint.memory tools/area.py --memory)  # the dual-ported RAM is bl
 brick_add_check(lint.layers tools/check_layers.py)           # who may include whom, firmware and C++
 brick_add_check(lint.names tools/check_names.py)             # a block's model, page, tests and proof have its name
 brick_add_check(lint.cdc tools/check_cdc.py)                # nothing asynchronous feeds logic
+brick_add_check(lint.outputs tools/check_outputs.py)        # no output has a glitch for who looks at any time
 brick_add_check(lint.fpga tools/fpga.py --check)            # fpga/brick_ecp5.sv between real pads elaborates
 brick_add_check(lint.python tools/lint_python.py)  # ruff, as pyproject.toml says
 brick_add_check(format.clang tools/check_format.py clang)

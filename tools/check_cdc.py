@@ -84,7 +84,7 @@ class Rules:
                 self.clocks += [(name, pattern) for pattern in registers]
             elif kind == "through":
                 self.through += [(name, pattern) for pattern in registers]
-            else:
+            elif pin.is_input:  # what an output is made of is check_outputs.py's
                 self.sampled += [(name, inside + pattern, settings[f"reason {kind}"]) for pattern in registers]
                 if kind == "strap":
                     self.straps.update(registers)

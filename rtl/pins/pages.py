@@ -222,9 +222,9 @@ def chips_page(tables, chips, root, text, path):
 
 
 # docs/pins.md ------------------------------------------------------------------------------------------------------
-def way(board, kind, registers):
+def way(board, pin, kind, registers):
     if f"reason {kind}" in board.settings:
-        return f"by {', '.join(f'`{name}`' for name in registers)} ({kind})"
+        return f"{'by' if pin.is_input else 'made of'} {', '.join(f'`{name}`' for name in registers)} ({kind})"
     return {"synchroniser": "synchroniser", "selected": "synchroniser behind a jumper's multiplexer",
             "clocks": f"clocks {', '.join(f'`{name}`' for name in registers)}",
             "resets": "acts without a clock",
@@ -239,7 +239,8 @@ def write_pins_page(tables, notice):
     board = tables["board"]
     yield from (f"<!-- {notice} -->", "# Board pins", "",
                 "The pins of the controller board, as every engine shows them: what drives them, where the packed",
-                "words have them, and how the RTL may look at them, which `lint.cdc` holds. A row here is a row of",
+                "words have them, and how the RTL may look at them, which `lint.cdc` holds. An output",
+                "is one flip-flop, or has what else it is made of, which `lint.outputs` holds. A row here is a row of",
                 "`rtl/pins/board.pins`; what is made of it, and what a new one takes, is in "
                 f"{link('architecture', '#board-pins')}.", f"Signals of waveforms and scripts: {link('signals')}. "
                 f"Pins of single blocks: {link('components')}; pads of a board of several chips: {link('chips')}.", "")
@@ -248,15 +249,15 @@ def write_pins_page(tables, notice):
             yield f"- *{key.removeprefix('reason ')}*: {text}"
     for title, inputs in (("Inputs", True), ("Outputs", False)):
         yield from ("", f"## {title}", "", "| pin | bits | port of `board_top` | place | " +
-                    ("idle | driven by | sampled | " if inputs else "signal | ") + "what | data sheet |",
-                    "|---|---|---|---|---|---|" + ("---|---|---|" if inputs else "---|"))
+                    ("idle | driven by | sampled | " if inputs else "signal | gates | ") + "what | data sheet |",
+                    "|---|---|---|---|---|---|" + ("---|---|---|" if inputs else "---|---|"))
         for pin in board.pins:
             if pin.is_input != inputs:
                 continue
             bit = "" if pin.rtl_bit is None else f"[{pin.rtl_bit}]"
             port = "" if pin.word is None else f"`{pin.rtl}{bit}`"
             place = "" if pin.word is None or pin.group == "own" else f"{pin.word}.{pin.lsb}"
-            ways = "; ".join(way(board, *one) for one in pin.sampled)
-            middle = f"${pin.idle:X} | `{pin.group}` | {ways}" if inputs else f"`{pin.signal}`"
+            ways = "; ".join(way(board, pin, *one) for one in pin.sampled)
+            middle = f"${pin.idle:X} | `{pin.group}` | {ways}" if inputs else f"`{pin.signal}` | {ways}"
             yield f"| `{pin.name}` | {pin.width} | {port} | {place} | {middle} | {pin.sentence} | {pin.rule} |"
     yield ""

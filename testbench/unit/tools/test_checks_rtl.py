@@ -1,4 +1,4 @@
-"""Negative controls of the checks of the RTL: lint, shared functions, clock crossings."""
+"""Negative controls of the checks of the RTL: lint, shared functions, clock crossings, outputs."""
 
 import shutil
 import subprocess
@@ -92,8 +92,9 @@ class SharedFunctions(Tree):
         self.expect(self.check(), 1, "no such file; expected a folder that the build has generated")
 
 
-@unittest.skipIf(shutil.which("yosys") is None, "yosys is not installed")
-class ClockCrossings(Tree):
+class Planted(Tree):
+    """A copy of the RTL to plant faults in."""
+
     def setUp(self):
         super().setUp()
         shutil.copytree(TOOLS.parent / "rtl", self.root / "rtl")
@@ -103,6 +104,9 @@ class ClockCrossings(Tree):
         self.assertEqual(text.count(old), 1, old)
         self.write(path, text.replace(old, new))
 
+
+@unittest.skipIf(shutil.which("yosys") is None, "yosys is not installed")
+class ClockCrossings(Planted):
     def test_each_way_past_a_synchroniser_is_named(self):
         """All at once: a look at the whole netlist is dear, and none hides another."""
         choice = "line_source[line_select_q[7:4]]"
@@ -136,19 +140,51 @@ class ClockCrossings(Tree):
         self.expect(done, 1, "ext_phase_i reaches u_clock_select.u_phase_sync.sync1_q (data)")
 
 
-@unittest.skipUnless(shutil.which("iverilog"), "iverilog is not installed")
-class Unknowns(Tree):
-    """In a copy of the RTL, a few hundred clocks each."""
+@unittest.skipIf(shutil.which("yosys") is None, "yosys is not installed")
+class Outputs(Planted):
+    def test_each_output_of_more_than_a_flip_flop_is_named(self):
+        """All at once, as above."""
+        slave, port, core = "rtl/host/isa_slave.sv", "rtl/host/host_port.sv", "rtl/board/board_core.sv"
+        for path, old, new in (
+                # IOCHRDY of two: at one edge the request goes and BUSY comes.
+                (slave, "logic        drive_q, iochrdy_q;", "logic        drive_q, iochrdy_q, busy_q;"),
+                (slave, "iochrdy_q <= ~(((cycle_d == Start) & decoded[Memory]) | mem_busy_d_i);",
+                 "{busy_q, iochrdy_q} <= {mem_busy_d_i, ~((cycle_d == Start) & decoded[Memory])};"),
+                (slave, "assign isa_iochrdy_o  = iochrdy_q;", "assign isa_iochrdy_o  = iochrdy_q & ~busy_q;"),
+                (port, "assign hreq_o = hreq_q;", "assign hreq_o = (icr_q[0] & rxdf_q) | (icr_q[1] & txde_q);"),
+                ("rtl/board/clock_select.sv", "phase_o        = phase_q;", "phase_o        = phase_q | ~phase_oe_q;"),
+                (core, "wd_led_o = wd_tripped_o;", "wd_led_o = pwr_good_i;"),
+                ("rtl/servo_ic/servo_channel.sv", "aena_o  = aena & ~trip_i;", "aena_o  = aena & ~trip_i & ~ab_inv;"),
+                ("rtl/servo_ic/servo_channel.sv", "equ_o = equ & ~trip_i;", "equ_o = equ & ~trip_i & ready;")):
+            self.plant(path, old, new)
+        done = self.run_tool("check_outputs.py")
+        board = ("isa_iochrdy_o is made of 2 level(s), u_isa_slave.busy_q, u_isa_slave.iochrdy_q among them",
+                 "hreq_o is made of 4 level(s), u_host_port.icr_q, u_host_port.rxdf_q, u_host_port.txde_q among them",
+                 "wd_led_o is made of 1 level(s), pwr_good_i among them",  # the pin itself
+                 "phase_o is made of 2 level(s), u_clock_select.phase_oe_q, u_clock_select.phase_q among them")
+        for named in (*board, *(f"board_chip: {text}" for text in board),
+                      "motor_o.equ is made of 3 level(s), gen_servo_ic[0].gen_built.u_servo_ic.u_channels.",
+                      "servo_ic_chip: motor_o.equ is made of 3 level(s), u_servo_ic.u_channels."):
+            self.expect(done, 1, named)
+        self.assertNotIn("motor_o.aena", done.stdout)  # its row allows the control word
+        *listed, count = done.stdout.splitlines()
+        self.assertEqual(count.split(": ")[1], f"{len(listed)} problem(s)")
+        self.assertEqual(len(listed), 2 * len(board) + 2 * 4)
 
-    def setUp(self):
-        super().setUp()
-        shutil.copytree(TOOLS.parent / "rtl", self.root / "rtl")
+    def test_a_row_that_says_more_than_the_rtl_does_fails(self):
+        self.plant("rtl/pins/board.pins", "cycle u_dpram.rd_ack_q u_dpram.wr_done_q", "cycle u_dpram.rd_ack_q")
+        self.plant("rtl/pins/board.pins", "flag u_clock_select.conflict_q", "flag u_dpram.* u_clock_select.conflict_q")
+        done = self.run_tool("check_outputs.py")
+        self.expect(done, 1, "pa_ta_n_o is made of 10 level(s), u_dpram.wr_done_q among them")
+        self.expect(done, 1, "source_conflict flag u_dpram.*: a row in rtl/pins allows it, nothing needs it")
+
+
+@unittest.skipUnless(shutil.which("iverilog"), "iverilog is not installed")
+class Unknowns(Planted):
+    """A few hundred clocks each."""
 
     def judge(self, top, path, old, new, clocks="600"):
-        file = self.root / "rtl" / path
-        text = file.read_text()
-        self.assertEqual(text.count(old), 1, old)
-        file.write_text(text.replace(old, new))
+        self.plant(f"rtl/{path}", old, new)
         return self.run_tool("check_unknowns.py", top, "--clocks", clocks)
 
     def test_a_register_without_reset_fails(self):
