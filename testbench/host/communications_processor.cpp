@@ -1,6 +1,7 @@
 #include "testbench/host/communications_processor.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "testbench/host/framing_probe.h"
@@ -31,6 +32,29 @@ bool is_control(const Packet& packet) {
   return packet.request == Packet::kSendControl || packet.request == Packet::kControlResponse;
 }
 
+bool is_text(const Packet& packet) {
+  return packet.request == Packet::kSendLine || packet.request == Packet::kGetResponse ||
+         packet.request == Packet::kWriteBuffer;
+}
+
+// Those of a packet, in their order.
+std::string stops_of(const Packet& packet) {
+  std::string stops;
+  if (is_control(packet) && is_stop(control_of(packet))) stops.push_back(static_cast<char>(control_of(packet)));
+  if (!is_text(packet)) return stops;
+  std::copy_if(packet.data.begin(), packet.data.end(), std::back_inserter(stops),
+               [](char c) { return is_stop(static_cast<std::uint8_t>(c)); });
+  return stops;
+}
+
+// Those of its first line have been carried out; those of the others come behind a line as well.
+void take_stops_of_first_line(Packet& packet) {
+  const char separator = packet.request == Packet::kWriteBuffer ? '\0' : '\r';
+  std::string& text = packet.data;
+  const auto end = std::find(text.begin(), text.end(), separator);
+  text.erase(std::remove_if(text.begin(), end, [](char c) { return is_stop(static_cast<std::uint8_t>(c)); }), end);
+}
+
 bool begins_job(const Packet& packet) {
   switch (packet.request) {
     case Packet::kSendLine:
@@ -46,9 +70,11 @@ bool begins_job(const Packet& packet) {
   }
 }
 
+constexpr std::string_view kBlank("\r\n \0", 4);
+
 // Lines of text, without what clients put behind the last one.
 std::vector<std::string> lines_of(std::string text, char separator) {
-  const std::size_t last = text.find_last_not_of(std::string("\r\n \0", 4));
+  const std::size_t last = text.find_last_not_of(kBlank);
   text.erase(last == std::string::npos ? 0 : last + 1);
   std::vector<std::string> lines;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -78,9 +104,11 @@ void CommunicationsProcessor::set_speed(double speed) {
 void CommunicationsProcessor::request(Client client, const EthernetPacket& packet) {
   State& state = clients_[client];
   Request request{packet, false};
-  if (is_control(packet) && is_stop(control_of(packet))) {
-    dialogue_.send_at_once(control_of(packet));
-    request.done = true;
+  const std::string stops = stops_of(packet);
+  for (const char stop : stops) dialogue_.send_at_once(static_cast<std::uint8_t>(stop));
+  if (!stops.empty() && !has_lines_to_come(client, state)) {
+    request.done = is_control(packet);
+    take_stops_of_first_line(request.packet);
   }
   if (packet.request == Packet::kFlush && is_under_way(client)) {
     state.output.clear();
@@ -89,6 +117,15 @@ void CommunicationsProcessor::request(Client client, const EthernetPacket& packe
   if (state.requests.empty()) state.since = bus_.now();
   state.requests.push_back(std::move(request));
   ++waiting_;
+}
+
+// That the client has asked for and the controller has not got: what stops things stops those, too, in its turn.
+bool CommunicationsProcessor::has_lines_to_come(Client id, const State& client) const {
+  if (is_under_way(id) && dialogue_.has_lines_to_send()) return true;
+  const auto first = client.requests.begin() + (client.started ? 1 : 0);
+  return std::any_of(first, client.requests.end(), [](const Request& request) {
+    return is_text(request.packet) && request.packet.data.find_first_not_of(kBlank) != std::string::npos;
+  });
 }
 
 void CommunicationsProcessor::close(Client client) {

@@ -62,6 +62,7 @@ class CommunicationsProcessor {
     std::string write_result = std::string(4, '\0');
   };
 
+  bool has_lines_to_come(Client id, const State& client) const;
   bool serve();
   bool serve(Client id, State& client);
   bool carry_out(Client id, State& client, const EthernetPacket& packet);

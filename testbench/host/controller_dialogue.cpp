@@ -114,8 +114,7 @@ std::uint8_t ControllerDialogue::checksum() const {
 
 void ControllerDialogue::put_next() {
   if (!port_.idle()) return;
-  const bool inside_line = phase_ == Phase::kSend && sent_ > 0;
-  if (!urgent_.empty() && !inside_line) {
+  if (!urgent_.empty() && !inside_line()) {
     port_.send(urgent_.front());
     urgent_.pop_front();
   } else if (phase_ == Phase::kClear) {

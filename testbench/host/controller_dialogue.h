@@ -37,6 +37,7 @@ class ControllerDialogue {
   void begin_clear(Tick wait);  // ^X, and its echo or `wait`
   void abandon();               // what is still to come is cleared away before the next job
   bool busy() const { return phase_ != Phase::kNone; }
+  bool has_lines_to_send() const { return items_.size() > (phase_ == Phase::kAnswer || inside_line() ? 1 : 0); }
 
   // Whatever job there is, but not inside a line; once for all requests that come before it is sent.
   void send_at_once(std::uint8_t c) {
@@ -69,6 +70,7 @@ class ControllerDialogue {
     bool control = false;  // a character by itself
   };
 
+  bool inside_line() const { return phase_ == Phase::kSend && sent_ > 0; }
   void begin(std::deque<Item> items);
   void next_item();
   std::uint8_t checksum() const;  // of the first item

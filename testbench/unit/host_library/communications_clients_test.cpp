@@ -173,6 +173,72 @@ TEST_F(CommunicationsProcessorTest, AStopDoesNotComeBeforeTheLineOfTheSameClient
   EXPECT_EQ(order, line + "\x01");
 }
 
+// ethernet:6/5: in the text of whatever request, too. The answers of the lines come in their turn.
+TEST_F(CommunicationsProcessorTest, WhatStopsThingsInTheTextOfARequestWaitsForNobody) {
+  std::string seen;
+  fake().control = [&](char c) {
+    if (c != 0x0E) seen.push_back(c);
+    return Bytes();
+  };
+  fake().thinking = 400 * kMs;
+  request(1, packet(Packet::kGetResponse, "slow"));
+  run(10 * kMs);
+  request(2, packet(Packet::kGetResponse, "\x01\n"));
+  request(3, packet(Packet::kSendLine, "\x0B"));
+  request(4, packet(Packet::kWriteBuffer, Bytes("\x04=1\0=2\x0F", 7)));
+  request(5, packet(Packet::kSendLine, "=3\x11\x18=4"));
+  request(6, packet(Packet::kSendLine, "=5\x12"));  // ^R in its turn
+  run(10 * kMs);
+  EXPECT_EQ(seen, "\x01\x0B\x04\x0F\x11");
+  EXPECT_EQ(take(), Replies{});
+  EXPECT_EQ(lines_, Lines{"slow"});
+  run(3000 * kMs);
+  EXPECT_EQ(seen, "\x01\x0B\x04\x0F\x11\x0F\x12") << "what follows a line in its packet comes there as well";
+  Replies replies = take();
+  std::sort(replies.begin(), replies.end());
+  EXPECT_EQ(replies, (Replies{{1, "slow\r\x06"}, {2, "\x06"}, {3, "@"}, {4, Bytes(4, '\0')}, {5, "@"}, {6, "@"}}));
+  EXPECT_EQ(lines_, (Lines{"slow", "", "", "=1", "=2", "=4", "=5"}));
+}
+
+// A client that does not wait for its replies: no line that it has sent before a stop moves anything behind it.
+TEST_F(CommunicationsProcessorTest, AStopBehindLinesOfTheSameClientThatWaitComesBehindThemAsWell) {
+  const std::pair<Packet, Bytes> stops[] = {{packet(Packet::kSendControl, "", 0x01), "@"},
+                                            {packet(Packet::kControlResponse, "", 0x01, 0, 0xC0), "\x06"},
+                                            {packet(Packet::kGetResponse, "\x01\n"), "\x06"}};
+  std::string order;
+  fake().control = [&](char c) {
+    if (c == 0x01) order += "^A ";
+    return Bytes();
+  };
+  fake().controller = [&](const Bytes& line) {
+    if (!line.empty()) order += line + ' ';
+    return "\x06";
+  };
+  for (const auto& [stop, reply] : stops) {
+    for (const bool together : {false, true}) {  // the lines: in a packet for each, or the first under way in one
+      order.clear();
+      fake().thinking = 100 * kMs;
+      request(together ? 1 : 2, packet(Packet::kGetResponse, together ? "slow\rJ+" : "slow"));
+      run(10 * kMs);
+      if (!together) request(1, packet(Packet::kGetResponse, "J+"));
+      request(1, stop);
+      run(1000 * kMs);
+      EXPECT_EQ(order, "slow ^A J+ ^A ");
+      EXPECT_EQ(take().back(), (std::pair<unsigned, Bytes>{1, reply}));
+      order.clear();
+      request(2, packet(Packet::kGetResponse, "slow"));
+      run(10 * kMs);
+      for (int i = 0; i < 2; ++i) {
+        request(1, stop);
+        run(10 * kMs);
+      }
+      run(1000 * kMs);
+      EXPECT_EQ(order, "slow ^A ^A ") << "asked for twice";
+      take();
+    }
+  }
+}
+
 // ethernet:6/3, ethernet:6/4
 TEST_F(CommunicationsProcessorTest, ControlCharactersAndTheirAnswers) {
   const auto ask_control = [this](unsigned value) { return ask(packet(Packet::kControlResponse, "", value, 0, 0xC0)); };
