@@ -20,6 +20,7 @@ namespace {
 
 constexpr const char* kFd = "fd:";
 constexpr const char* kGone = "the client has gone";
+constexpr std::size_t kMostSilent = 16;  // the one that has said nothing for longest gives its place
 
 int inherited(const std::string& place) {
   const std::string digits = place.substr(std::strlen(kFd));
@@ -56,12 +57,12 @@ bool is_left_over(const sockaddr_un& address) {
 int listening_at(const std::string& path) {
   const sockaddr_un address = address_of(path);
   if (is_left_over(address)) unlink(path.c_str());
-  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const mode_t mask = umask(0177);
   const bool bound = bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   const int error = errno;
   umask(mask);
-  if (bound && listen(fd, 1) == 0) return fd;
+  if (bound && listen(fd, SOMAXCONN) == 0) return fd;
   ::close(fd);
   throw UsageError(fmt::format("{}: {}; expected a place for a new socket", path, std::strerror(error)));
 }
@@ -79,6 +80,7 @@ ControlChannel::ControlChannel(const std::string& place) {
 
 ControlChannel::~ControlChannel() {
   if (client_ >= 0) ::close(client_);
+  for (const int client : silent_) ::close(client);
   stop_listening();
 }
 
@@ -87,6 +89,16 @@ void ControlChannel::stop_listening() {
   unlink(path_.c_str());
   ::close(listener_);
   listener_ = -1;
+}
+
+// With one line, for which there is room, because nothing has been sent yet.
+void ControlChannel::refuse(std::size_t n, const char* why) {
+  if (why != nullptr) {
+    const std::string line = error_line(nullptr, RpcError(rpc::kNoRequest, why));
+    (void)!send(silent_[n], line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  }
+  ::close(silent_[n]);
+  silent_.erase(silent_.begin() + static_cast<std::ptrdiff_t>(n));
 }
 
 bool ControlChannel::closed() const {
@@ -100,18 +112,38 @@ bool ControlChannel::ready(int fd, short events, const Idle& idle) const {
   return poll(&one, 1, static_cast<int>(idle().count())) > 0;
 }
 
-// One that leaves without a byte was none: another `brick control` looks so whether anybody listens at the path.
+void ControlChannel::admit_all() {
+  for (int client; (client = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC)) >= 0;) {
+    if (silent_.size() == kMostSilent) refuse(0, "too many clients that say nothing; expected a request");
+    silent_.push_back(client);
+  }
+}
+
+void ControlChannel::take(std::size_t n) {
+  client_ = silent_[n];
+  silent_.erase(silent_.begin() + static_cast<std::ptrdiff_t>(n));
+  admit_all();
+  while (!silent_.empty()) refuse(0, "another client has the controller; expected a `brick control` for each");
+  stop_listening();
+}
+
+// Whoever speaks first has the controller. One that leaves without a byte was none: another `brick control` looks so
+// whether anybody listens at the path.
 void ControlChannel::accept(const Idle& idle) {
   while (listener_ >= 0) {
-    if (!ready(client_ < 0 ? listener_ : client_, POLLIN, idle)) continue;
-    if (client_ < 0) {
-      client_ = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-      continue;
+    std::vector<pollfd> all{{listener_, POLLIN, 0}};
+    for (const int client : silent_) all.push_back({client, POLLIN, 0});
+    if (poll(all.data(), all.size(), static_cast<int>(idle().count())) <= 0) continue;
+    for (std::size_t n = 0, at = 1; at < all.size(); ++at) {
+      char first;
+      if (all[at].revents == 0)
+        ++n;
+      else if (recv(silent_[n], &first, 1, MSG_PEEK | MSG_DONTWAIT) == 1)
+        return take(n);
+      else
+        refuse(n, nullptr);
     }
-    char first;
-    if (recv(client_, &first, 1, MSG_PEEK | MSG_DONTWAIT) == 1) return stop_listening();
-    ::close(client_);
-    client_ = -1;
+    if (all[0].revents != 0) admit_all();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "app/control/json_rpc.h"
 
@@ -35,11 +36,15 @@ class ControlChannel {
   bool closed() const;  // the client has gone, whatever of it is not read yet
 
  private:
-  void stop_listening();  // a second client is refused instead of left waiting
+  void stop_listening();
+  void admit_all();
+  void take(std::size_t n);                     // of the silent ones; the others are refused instead of left waiting
+  void refuse(std::size_t n, const char* why);  // nullptr: it has gone
   bool ready(int fd, short events, const Idle& idle) const;
 
   int listener_ = -1, client_ = -1;
-  std::string path_;  // of the listener
+  std::vector<int> silent_;  // have connected and said nothing, the oldest first
+  std::string path_;         // of the listener
   RpcLines lines_;
 };
 

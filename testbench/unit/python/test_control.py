@@ -245,6 +245,34 @@ def test_a_path_is_for_this_user_alone_and_for_the_first_who_speaks(tmp_path):
     assert process.communicate(timeout=PATIENCE) == (None, "") and process.returncode == 0
 
 
+def connected(place, limit):
+    client = socket.socket(socket.AF_UNIX)
+    client.settimeout(PATIENCE)
+    while client.connect_ex(str(place)) != 0:
+        assert time.monotonic() < limit
+        time.sleep(0.01)
+    return client
+
+
+def test_who_says_nothing_keeps_nobody_out(tmp_path):
+    place = tmp_path / "control"
+    process = subprocess.Popen([BRICK, "control", place], stderr=subprocess.PIPE, text=True)
+    limit = time.monotonic() + PATIENCE
+    with contextlib.ExitStack() as stack:
+        silent = [stack.enter_context(connected(place, limit)) for _ in range(17)]
+        first = json.loads(silent.pop(0).makefile().readline())
+        assert "too many clients that say nothing; expected a request" in first["error"]["message"]
+        client = stack.enter_context(connected(place, limit))
+        client.sendall(b'{"jsonrpc": "2.0", "id": 1, "method": "hello", "params": {"protocol": "1.0"}}\n')
+        assert json.loads(client.makefile().readline())["result"]["protocol"] == "1.0"
+        said = [one.makefile().read() for one in silent]  # to its end
+        assert all(text.count("\n") == 1 for text in said), said
+        errors = [json.loads(text) for text in said]
+        assert all(one["id"] is None and one["error"]["code"] == -32600 for one in errors), errors
+        assert sum("another client has the controller; expected" in one["error"]["message"] for one in errors) >= 15
+    assert process.communicate(timeout=PATIENCE) == (None, "") and process.returncode == 0
+
+
 @pytest.mark.parametrize("option", ["--gdb=0", "--json=results.json"])
 def test_options_that_mean_nothing_here_are_refused(tmp_path, option):
     done = subprocess.run([BRICK, "control", "socket", option], cwd=tmp_path, capture_output=True, text=True,
