@@ -295,6 +295,7 @@ int sc_main(int argc, char** argv) { return brick::with_output_written(brick::ma
 int main(int argc, char** argv) {
   brick::replace_closed_streams();
   std::signal(SIGPIPE, SIG_IGN);                        // a reader that has gone is an error of the write
+  std::signal(SIGXFSZ, SIG_IGN);                        // and so is a limit of the size of files
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);  // stdout and stderr belong to the command
   return sc_core::sc_elab_and_sim(argc, argv);
 }

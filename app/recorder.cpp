@@ -1,5 +1,7 @@
 #include "app/recorder.h"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -57,15 +59,25 @@ void Recorder::task_changed() {
 }
 
 void Recorder::row() {
+  if (!failure_.empty()) return;
   const RecordRow row{static_cast<double>(fell_) * 1e-12};
   out_ << fmt::format("{:.6f}", row.ms);
   for (const RecordColumn& column : columns_) out_ << fmt::format(",{:.10g}", column.value(row));
   out_ << '\n';
+  if (out_) return;
+  fail(errno);
+  if (on_failure) on_failure(failure_);
+}
+
+void Recorder::fail(int error) {
+  failure_ = fmt::format("--record {}: cannot be written beyond about {:.3f} ms: {}; expected room for the rows", file_,
+                         static_cast<double>(fell_) * 1e-12, std::strerror(error));
 }
 
 void Recorder::close() {
   out_.close();
-  if (!out_) throw UsageError(fmt::format("--record {}: cannot be written; expected a writable place", file_));
+  if (!out_ && failure_.empty()) fail(errno);
+  if (!failure_.empty()) throw UsageError(failure_);
 }
 
 }  // namespace brick

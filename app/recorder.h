@@ -23,12 +23,14 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   void close();  // writes what is left; throws UsageError if the file could not be written
+  std::function<void(const std::string&)> on_failure;  // then, and no row comes after it; once
 
   static void check_name(const std::string& file);  // throws UsageError unless it ends in .csv
 
  private:
   void task_changed();
   void row();
+  void fail(int error);
 
   Machine& machine_;
   std::string file_;
@@ -38,6 +40,7 @@ class Recorder {
   decltype(Machine::on_task) on_task_;
   bool in_servo_ = false;
   TimeFs fell_ = 0;  // SERVO
+  std::string failure_;
 };
 
 }  // namespace brick

@@ -58,6 +58,22 @@ void stop_when_asked() {
   }
 }
 
+std::string text_of(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const std::exception& e) { return e.what(); }
+}
+
+// Which is how some runs end; a file that got lost is more.
+bool is_interruption(const std::exception_ptr& error) {
+  if (!error) return false;
+  try {
+    std::rethrow_exception(error);
+  } catch (const Interrupted&) { return true; } catch (...) {
+    return false;
+  }
+}
+
 std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
   try {
     return std::make_unique<Machine>("brick", config);
@@ -116,6 +132,7 @@ void Simulation::open_wave(const std::string& file, const WaveWindow& window, co
     if (!folder.empty()) std::filesystem::create_directories(folder, ignored);
     trace_ = TraceWriter::open(file, window.from, window.to);
   } catch (const std::exception& e) { throw UsageError(fmt::format("--wave {}; expected a writable place", e.what())); }
+  trace_->on_failure = [this](const std::string& why) { tell(fmt::format("brick: {}; the run goes on", why)); };
   wave_ = file;
   machine_->signals().attach(trace_.get(), groups);
 }
@@ -123,19 +140,24 @@ void Simulation::open_wave(const std::string& file, const WaveWindow& window, co
 void Simulation::close_wave() {
   if (!trace_) return;
   machine_->signals().attach(nullptr);
-  trace_->close();
-  trace_.reset();
+  const std::unique_ptr<TraceWriter> ended = std::move(trace_);
+  try {
+    ended->close();
+  } catch (const std::exception& e) {
+    throw UsageError(fmt::format("--wave {}; expected room for the waveform", e.what()));
+  }
 }
 
 void Simulation::open_record(const std::string& file, const std::string& of) {
   if (recorder_) throw UsageError(fmt::format("--record {}: there is one already; expected its end first", file));
   recorder_ = std::make_unique<Recorder>(*machine_, file, of, usual_columns());
+  recorder_->on_failure = [this](const std::string& why) { tell(fmt::format("brick: {}; the run goes on", why)); };
 }
 
 void Simulation::close_record() {
   if (!recorder_) return;
-  const auto recorder = std::exchange(recorder_, nullptr);  // one that cannot be written is none that goes on
-  recorder->close();
+  const std::unique_ptr<Recorder> ended = std::move(recorder_);
+  ended->close();
 }
 
 void Simulation::open_profile(const std::string& file, const std::string& image) {
@@ -191,7 +213,8 @@ void Simulation::run(const std::function<void()>& host) {
     try {
       (this->*close)();
     } catch (const std::exception& e) {  // each is closed, and the first error ends the run
-      if (error) tell(e.what());
+      if (is_interruption(error)) tell(fmt::format("brick: {}", text_of(std::exchange(error, nullptr))));
+      if (error) tell(fmt::format("brick: {}", e.what()));
       if (!error) error = std::current_exception();
     }
   }

@@ -119,9 +119,10 @@ int control_command(const ControlOptions& options) {
     simulation.run([&] {
       connect_at_start(simulation);
       set_up.send(simulation);
-      ControlServer(simulation, channel, session, options.realtime).serve();
+      try {
+        ControlServer(simulation, channel, session, options.realtime).serve();
+      } catch (const ChannelClosed&) {}  // as it should
     });
-  } catch (const ChannelClosed&) {  // as it should
   } catch (const std::exception& e) { failure = e.what(); }
   std::vector<std::string> failures;
   if (!failure.empty()) failures.push_back(failure);

@@ -2,6 +2,7 @@
 // holds them back until every source has passed that time (`flush_until`) and writes them in order.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -18,7 +19,10 @@ class TraceWriter {
   virtual void record(Signals::Id id, TimeFs time, std::uint64_t value) = 0;
   virtual void record_text(Signals::Id id, TimeFs time, const std::string& text) = 0;
   virtual void flush_until(TimeFs time) = 0;  // no record before `time` will come any more
-  virtual void close() = 0;                   // writes what is left
+  virtual void close() = 0;                   // writes what is left; throws what flush_until() has told
+
+  // The file takes no more, said once from flush_until(), which drops what comes after. Without it that throws.
+  std::function<void(const std::string&)> on_failure;
 
   // Opens FILE.vcd or FILE.fst for the window [from, to] (values at `from` are dumped first). Throws std::runtime_error
   // with one clear line when the ending is neither, or the file cannot be written.

@@ -21,12 +21,12 @@ void TraceQueue::declare(Signals::Id id, const Signals::Info& info, Signals::Id 
 }
 
 void TraceQueue::record(Signals::Id id, TimeFs time, std::uint64_t value) {
-  if (time > to_) return;
+  if (time > to_ || !failure_.empty()) return;
   add(time, value, id);
 }
 
 void TraceQueue::record_text(Signals::Id id, TimeFs time, const std::string& text) {
-  if (time > to_) return;
+  if (time > to_ || !failure_.empty()) return;
   const auto [entry, added] = text_index_.try_emplace(text, texts_.size());
   if (added) texts_.push_back(&entry->first);
   add(time, entry->second, id);
@@ -43,7 +43,20 @@ void TraceQueue::add(TimeFs time, std::uint64_t value, Signals::Id id) {
 
 void TraceQueue::flush_until(TimeFs time) {
   complete_ = std::max(complete_, time);
-  if (pending_ >= kLot) write_until(complete_);
+  if (pending_ < kLot) return;
+  try {
+    write_until(complete_);
+  } catch (const std::exception& e) {
+    if (!on_failure) throw;
+    give_up(e.what());
+  }
+}
+
+void TraceQueue::give_up(const std::string& why) {
+  failure_ = why;
+  runs_.clear();
+  pending_ = 0;
+  on_failure(failure_);
 }
 
 void TraceQueue::write_until(TimeFs time) {
@@ -122,6 +135,7 @@ void TraceQueue::advance(TimeFs time) {
 void TraceQueue::close() {
   if (closed_) return;
   closed_ = true;
+  if (!failure_.empty()) throw std::runtime_error(failure_);
   write_until(kForever);
   const TimeFs end = std::min(complete_, to_);
   if (end >= from_) {

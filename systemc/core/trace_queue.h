@@ -61,6 +61,7 @@ class TraceQueue : public TraceWriter {
   void open_window();
   void write_declared(Signals::Id id);
   void advance(TimeFs time);
+  void give_up(const std::string& why);
   static std::int64_t to_ps(TimeFs time) { return static_cast<std::int64_t>(time / kFsPerPs); }
 
   const TimeFs from_, to_;
@@ -74,6 +75,7 @@ class TraceQueue : public TraceWriter {
   bool header_ = false;
   bool window_ = false;
   bool closed_ = false;
+  std::string failure_;  // why the file takes no more
 };
 
 }  // namespace brick

@@ -1,4 +1,6 @@
 // Value change dump (IEEE 1364 clause 18) with the `string` variables that GTKWave reads as an extension.
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,6 +45,7 @@ class VcdWriter : public TraceQueue {
   VcdWriter(const std::string& file, TimeFs from, TimeFs to)
       : TraceQueue(from, to), name_(file), file_(std::fopen(file.c_str(), "w")) {
     if (!file_) throw std::runtime_error(file + ": cannot write the waveform: " + std::strerror(errno));
+    std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // it gets pieces of 64 KiB
   }
   ~VcdWriter() override {
     try {
@@ -82,6 +85,7 @@ class VcdWriter : public TraceQueue {
     out_ += line_;
     if (first) out_ += "$dumpvars\n";
     if (out_.size() > kFileBuffer) write_out();
+    reached_ps_ = ps;
   }
   void write_value(Signals::Id id, std::uint64_t value) override {
     const unsigned width = declared()[id].info.width;
@@ -104,6 +108,8 @@ class VcdWriter : public TraceQueue {
   }
   void write_out() {
     if (std::fwrite(out_.data(), 1, out_.size(), file_.get()) != out_.size()) fail();
+    whole_ += static_cast<off_t>(out_.size());
+    whole_ps_ = reached_ps_;
     out_.clear();
   }
   void finish() override {
@@ -111,8 +117,12 @@ class VcdWriter : public TraceQueue {
     write_out();
     if (std::fclose(file_.release()) != 0) fail();
   }
+  // What is there stays a waveform that a viewer reads: part of a line is taken back.
   [[noreturn]] void fail() const {
-    throw std::runtime_error(name_ + ": cannot write the waveform: " + std::strerror(errno));
+    const int error = errno;
+    if (file_) (void)!ftruncate(fileno(file_.get()), whole_);
+    throw std::runtime_error(fmt::format("{}: cannot write the waveform beyond {:.6f} ms: {}", name_,
+                                         static_cast<double>(whole_ps_) * 1e-9, std::strerror(error)));
   }
 
   struct Closer {
@@ -123,6 +133,8 @@ class VcdWriter : public TraceQueue {
   std::vector<std::string> codes_;
   std::string out_, line_;
   bool dumping_ = false;
+  off_t whole_ = 0;                             // bytes of the file in whole lines
+  std::int64_t reached_ps_ = 0, whole_ps_ = 0;  // in out_, in the file
 };
 
 }  // namespace

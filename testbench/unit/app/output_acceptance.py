@@ -6,6 +6,8 @@ usage: output_acceptance.py BRICK CASE; each CASE is one test.
 import json
 import os
 import pathlib
+import re
+import resource
 import subprocess
 import tempfile
 
@@ -58,9 +60,26 @@ def results_lost():
             made = json.loads(results.read_text())
             results.unlink()
             check(made["verdict"] == "FAIL" and name in made["steps"][-1]["detail"], f"{option}: {made['steps'][-1]}")
+        room_ends(folder)
         r = subprocess.run([command.BRICK, "run", "smoke", "--cover", f"{folder}/c"], capture_output=True, text=True,
                            env={**os.environ, "PATH": folder}, timeout=60, check=False)
         check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"no disassembler: {r}")
+
+
+def room_ends(folder):
+    """A waveform or record for which there is no more room ends, with a line that says when; the run goes on."""
+    for option, name, most in (("--wave", "w.vcd", 150_000), ("--record", "r.csv", 20_000)):
+        file = pathlib.Path(folder, name)
+        file.unlink(missing_ok=True)
+        limits = (most, most)
+        r = subprocess.run([command.BRICK, "exec", "-", option, str(file)], input="@wait 400ms\nI16\n", text=True,
+                           capture_output=True, timeout=60, check=False,
+                           preexec_fn=lambda limits=limits: resource.setrlimit(resource.RLIMIT_FSIZE, limits))
+        check(r.returncode == 1 and r.stdout == "5\n", f"{option}: {r}")
+        told = re.findall(rf"{name}: cannot .* beyond [a-z ]*(\d+\.\d+) ms: File too large.*; the run goes on",
+                          r.stderr)
+        check(len(told) == 1 and 0 < float(told[0]) < 400, f"{option}: {r.stderr}")
+        check(0 < file.stat().st_size <= most, f"{option}: {file.stat().st_size} bytes")
 
 
 globals()[command.CASE]()

@@ -8,6 +8,7 @@ import os
 import pathlib
 import pty
 import re
+import select
 import signal
 import socket
 import struct
@@ -190,6 +191,20 @@ def serve_ends():
             client.request(0x40, 0xE0, data=struct.pack("4B", 10, 1, 2, 99))
             check("flash.bin.address: cannot be written, the address is lost" in server.end(), "a lost address")
         made = json.loads(results.read_text())
+        for option, name in (("--wave", "w.vcd"), ("--record", "r.csv")):
+            full = pathlib.Path(folder, name)
+            full.symlink_to("/dev/full")
+            with served("--free", option, str(full)) as server, server.client() as client:
+                said = ""
+                while "the run goes on" not in said:
+                    check(client.get_buffer() == b"\0", "half a second of simulated time")
+                    if select.select([server.process.stderr], [], [], 0)[0]:
+                        said += server.process.stderr.readline()
+                check("No space left on device" in said and name in said, said)
+                check(client.values("I16") == ["5"], f"{option}: it answers")
+                said = server.end(status=1)
+                check(said.count("No space left on device") == 1 and "stopped by SIGTERM" in said, said)
+            full.unlink()
         check(made["passed"] and all(key in made for key in ("build", "image", "command")), str(made.keys()))
         for bad in ("somewhere\n", "", "999.1.2.3\n", "1,2,3,4\n", "-1.2.3.4\n"):
             (pathlib.Path(folder) / "flash.bin.address").write_text(bad, encoding="ascii")

@@ -229,6 +229,37 @@ TEST_F(Trace, TellsThatThereWasNoRoom) {
   }
 }
 
+// Where somebody is told, what is there ends with a whole line and its time, and whoever records may go on.
+TEST_F(Trace, AFileThatTakesNoMoreEndsTheWaveformAlone) {
+  const std::string file = path(".vcd");
+  constexpr TimeFs kNs = 1000 * kPs;
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  auto writer = TraceWriter::open(file);
+  std::vector<std::string> told;
+  writer->on_failure = [&](const std::string& why) { told.push_back(why); };
+  signals.attach(writer.get());
+  rlimit small = before;
+  small.rlim_cur = 100'000;
+  setrlimit(RLIMIT_FSIZE, &small);
+  for (unsigned i = 1; i < 100'000; ++i) {
+    signals.set(addr, i * kNs, i % 16);
+    writer->flush_until(i * kNs);
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  signals.attach(nullptr);
+  const std::string text = read(file);
+  const std::size_t last = text.rfind('#');
+  ASSERT_NE(last, std::string::npos);
+  EXPECT_EQ(text.back(), '\n');
+  const std::string time = fmt::format("{:.6f} ms", (std::stod(text.substr(last + 1)) - 1000) * 1e-9);
+  EXPECT_EQ(told, std::vector<std::string>{file + ": cannot write the waveform beyond " + time + ": File too large"});
+  EXPECT_THROW(writer->close(), std::runtime_error);
+  std::remove(file.c_str());
+}
+
 TEST(TraceOpen, SaysWhatIsWrongWithTheFileName) {
   EXPECT_THROW(
       {

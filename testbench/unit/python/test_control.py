@@ -204,6 +204,25 @@ def test_a_script_prints_what_brick_exec_prints(shared):
     assert error["code"] == 2 and error["data"]["lines"] == ["5"]
 
 
+def test_a_waveform_without_room_is_an_error_of_its_own_and_the_machine_goes_on(tmp_path):
+    for ending, start in (("vcd", "wave"), ("csv", "record")):
+        file = tmp_path / f"f.{ending}"
+        file.symlink_to("/dev/full")
+        for stopped in (True, False):
+            with control() as client:
+                assert "result" in client.call(f"{start}.start", file=str(file))
+                assert "result" in client.call("run", ns=100_000_000)
+                if stopped:
+                    error = client.call(f"{start}.stop")["error"]
+                    assert error["code"] == -32602 and "No space left on device; expected" in error["message"], error
+                    assert "result" in client.call(f"{start}.start", file=str(tmp_path / f"g.{ending}"))
+                assert client.call("command", line="P9")["result"]["lines"] == ["0"]
+                client.hang_up()
+                status, said = client.end()
+            assert status == (0 if stopped else 1) and said.count("the run goes on") == 1, said
+            assert said.count("No space left on device") == (1 if stopped else 2), said
+
+
 def test_the_end_of_the_client_ends_it_in_the_middle_of_a_call():
     with control() as client:
         client.call("hello", protocol="1.0")
