@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <asio.hpp>
 
+#include "app/complaint.h"
 #include "app/ethernet_connection.h"
 #include "app/place.h"
 #include "systemc/core/usage_error.h"
@@ -36,21 +37,6 @@ std::string text_of(const tcp::endpoint& place) {
   const std::string host = place.address().to_string();
   return fmt::format("{}:{}", place.address().is_v6() ? '[' + host + ']' : host, place.port());
 }
-
-// What goes wrong again and again is said the 1st, 10th, 100th ... time: whoever reads that may be slow, or nobody, and
-// a pipe that is full would hold the simulation up.
-class Complaint {
- public:
-  std::string text(const std::string& what) {
-    if (++count_ < next_) return "";
-    next_ *= kTimes;
-    return count_ == 1 ? what : fmt::format("{} ({} times so far)", what, count_);
-  }
-
- private:
-  static constexpr std::size_t kTimes = 10;
-  std::size_t count_ = 0, next_ = 1;
-};
 
 }  // namespace
 

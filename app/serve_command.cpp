@@ -13,6 +13,7 @@
 #include "app/build_info.h"
 #include "app/byte_text.h"
 #include "app/commands.h"
+#include "app/complaint.h"
 #include "app/ethernet_server.h"
 #include "app/page/page.h"
 #include "app/session_end.h"
@@ -88,10 +89,12 @@ int serve_command(const ServeOptions& options) {
   SimulationLoop loop(simulation.bus(), options.free);
   if (!address.empty()) processor.set_address(address);
   const auto tell = [&](const std::string& text) { simulation.tell("brick serve: " + text); };
+  Complaint lost_address;
   processor.on_address = [&](const std::string& bytes) {
-    if (!address_file.write(bytes))
-      tell(fmt::format("{}: cannot be written, the address is lost at the end; expected a writable place",
-                       address_file.name()));
+    if (address_file.write(bytes)) return;
+    const std::string text = lost_address.text(fmt::format(
+        "{}: cannot be written, the address is lost at the end; expected a writable place", address_file.name()));
+    if (!text.empty()) tell(text);
   };
   server.on_request = [&](EthernetServer::Client client, const EthernetPacket& packet) {
     loop.post([&processor, client, packet] { processor.request(client, packet); });

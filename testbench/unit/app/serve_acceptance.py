@@ -189,7 +189,11 @@ def serve_ends():
         with served("--free", "--flash", file, "--json", str(results)) as server, server.client() as client:
             (pathlib.Path(folder) / "flash.bin.address.new").mkdir()  # where it would be written
             client.request(0x40, 0xE0, data=struct.pack("4B", 10, 1, 2, 99))
-            check("flash.bin.address: cannot be written, the address is lost" in server.end(), "a lost address")
+            for number in range(999):  # nobody reads what it says meanwhile
+                address = struct.pack(">I", number)
+                check(client.request(0x40, 0xE0, data=address) == address, f"IPADDRESS {number}")
+            said = re.findall(r"flash\.bin\.address: cannot be written, the address is lost.*", server.end())
+            check(len(said) == 4 and said[3].endswith("(1000 times so far)"), f"a lost address: {said}")
         made = json.loads(results.read_text())
         for option, name in (("--wave", "w.vcd"), ("--record", "r.csv")):
             full = pathlib.Path(folder, name)
