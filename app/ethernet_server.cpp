@@ -86,9 +86,12 @@ void EthernetServer::Impl::bind(const tcp::endpoint& endpoint) {
   datagrams = udp::socket(io);
   acceptor.open(endpoint.protocol());
   acceptor.set_option(tcp::acceptor::reuse_address(true));
+  const bool all = endpoint.address().is_v6() && endpoint.address().is_unspecified();
+  if (all) acceptor.set_option(asio::ip::v6_only(false));  // whatever the system's habit is
   acceptor.bind(endpoint);
   const tcp::endpoint bound = acceptor.local_endpoint();
   datagrams.open(bound.address().is_v6() ? udp::v6() : udp::v4());
+  if (all) datagrams.set_option(asio::ip::v6_only(false));
   datagrams.bind(udp::endpoint(bound.address(), bound.port()));
   acceptor.listen();
 }

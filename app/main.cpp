@@ -127,7 +127,9 @@ struct Commands {
 
     auto* serve = app.add_subcommand(
         "serve", "a controller behind the Ethernet port of a Brick, for host software of the real one");
-    serve->add_option("--listen", serve_options.listen, "where, TCP and UDP; port 0 takes a free one")
+    serve
+        ->add_option("--listen", serve_options.listen,
+                     "where, TCP and UDP; port 0 takes a free one, host * every address")
         ->type_name("HOST:PORT")
         ->capture_default_str();
     auto* page = serve->add_option("--page", serve_options.page, "a page to look at it in a browser (docs/page.md)")

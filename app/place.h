@@ -6,7 +6,7 @@
 namespace brick {
 
 struct Place {
-  std::string host, port;  // an IPv6 address without its brackets; up to five digits
+  std::string host, port;  // an IPv6 address without its brackets, of * the one that means all; up to five digits
 };
 
 // Throws UsageError, with `example` in it.

@@ -76,6 +76,7 @@ void PageServer::Impl::listen(const std::string& text) try {
   const tcp::endpoint endpoint = found.begin()->endpoint();
   acceptor.open(endpoint.protocol());
   acceptor.set_option(tcp::acceptor::reuse_address(true));
+  if (endpoint.address().is_v6() && endpoint.address().is_unspecified()) acceptor.set_option(net::ip::v6_only(false));
   acceptor.bind(endpoint);
   acceptor.listen();
 } catch (const boost::system::system_error& e) {

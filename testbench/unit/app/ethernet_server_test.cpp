@@ -121,6 +121,34 @@ TEST_F(SendersOfDatagrams, ADatagramTooManyIsLost) {
   EXPECT_EQ(requests_, EthernetServer::kMostRequests + 1);
 }
 
+// Of both protocols, TCP and UDP.
+TEST(EthernetPlaces, AnAsteriskIsEveryAddress) {
+  EthernetServer server("*:0");
+  server.on_request = [&server](EthernetServer::Client client, const EthernetPacket&) { server.reply(client, "ok"); };
+  server.on_close = [](EthernetServer::Client) {};
+  server.start();
+  const std::string place = server.place();
+  const auto port = static_cast<std::uint16_t>(std::stoul(place.substr(place.rfind(':') + 1)));
+  std::vector<asio::ip::address> addresses{asio::ip::address_v4::loopback(), asio::ip::make_address("127.0.0.2")};
+  asio::io_context io;
+  asio::error_code none;
+  if (tcp::socket other(io);
+      !other.open(tcp::v6(), none) && !other.bind(tcp::endpoint(asio::ip::address_v6::loopback(), 0), none))
+    addresses.emplace_back(asio::ip::address_v6::loopback());
+  const std::string_view ready("\xC0\xC2\0\0\0\0\0\2", 8);
+  for (const asio::ip::address& address : addresses) {
+    char reply[4] = {};
+    tcp::socket client(io);
+    client.connect({address, port});
+    asio::write(client, asio::buffer(ready));
+    EXPECT_EQ(client.receive(asio::buffer(reply)), 2u) << address;
+    udp::socket datagrams(io, udp::endpoint(address.is_v4() ? udp::v4() : udp::v6(), 0));
+    datagrams.send_to(asio::buffer(ready), {address, port});
+    EXPECT_EQ(datagrams.receive(asio::buffer(reply)), 2u) << address;
+  }
+  server.stop();
+}
+
 // ethernet:1/10
 TEST(EthernetConnections, AClientThatSaysNothingIsAskedWhetherItIsThere) {
   asio::io_context io;
