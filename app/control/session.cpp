@@ -41,6 +41,13 @@ void check_line(const std::string& line) {
         fmt::format("parameter line: expected one line of ASCII, up to {} characters, without CR", kLongestLine));
 }
 
+// Of ^X in the line (I63): a byte without an end of a line, which stands in front of what is answered then.
+void drop_echo(std::vector<std::string>& lines) {
+  if (lines.empty() || lines.front().find('\x18') != 0) return;
+  lines.front().erase(0, lines.front().find_first_not_of('\x18'));
+  if (lines.front().empty()) lines.erase(lines.begin());
+}
+
 unsigned error_number(const std::string& text) {
   const std::string digits = text.rfind("ERR", 0) == 0 ? text.substr(3) : "";
   return digits.empty() ? 0 : static_cast<unsigned>(std::strtoul(digits.c_str(), nullptr, 10));
@@ -133,8 +140,9 @@ json ControlSession::command(RpcParams& params) {
   params.end();
   check_line(line);
   HostLink& link = simulation_.link();
-  const Reply reply =
+  Reply reply =
       line.size() == 1 && line[0] < ' ' ? link.control(static_cast<std::uint8_t>(line[0])) : link.command(line);
+  drop_echo(reply.lines);
   json result{{"lines", texts_of(reply.lines)}, {"texts", texts_of(link.take_unsolicited())}};
   if (reply.error) {
     const std::string last = reply.lines.empty() ? "ERR" : reply.lines.back();

@@ -157,6 +157,11 @@ def test_a_refused_line_has_its_number(shared):
     assert (error["code"], error["data"]["number"], error["data"]["line"]) == (1, 3, "frob")
 
 
+def test_the_echo_of_a_cleared_line_is_no_answer(shared):
+    for line, lines in (("\x18", []), ("P1\x18P9", ["0"]), ("frob\x18", []), ("a\x18b\x18P9 P9", ["0", "0"])):
+        assert shared.call("command", line=line)["result"]["lines"] == lines, line
+
+
 def test_limits_of_simulated_and_of_wall_time(shared):
     begin = shared.call("run", ns=0)["result"]["tick"]
     error = shared.call("until", name="host.breq", value="1", ns=1_000_000)["error"]
