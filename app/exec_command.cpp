@@ -1,7 +1,6 @@
 // `brick exec`: starts the controller, plays a host script, prints the replies.
-#include <filesystem>
-#include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -11,7 +10,7 @@
 #include "app/session_end.h"
 #include "app/set_up.h"
 #include "app/simulation.h"
-#include "systemc/core/usage_error.h"
+#include "systemc/core/input_file.h"
 
 namespace brick {
 
@@ -19,11 +18,7 @@ namespace {
 
 std::vector<ScriptLine> open_script(const std::string& file, const std::string& name) {
   if (file == "-") return read_script(std::cin, name);
-  std::ifstream in(file);
-  std::error_code ignored;
-  if (!in || std::filesystem::is_directory(file, ignored))
-    throw UsageError(
-        fmt::format("{}: cannot be read; expected a command file or host script, or - for standard input", file));
+  std::istringstream in(read_input_file(file, "a command file or host script, or - for standard input"));
   return read_script(in, name);
 }
 

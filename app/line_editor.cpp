@@ -14,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "systemc/core/input_file.h"
+
 namespace brick {
 
 namespace {
@@ -135,6 +137,7 @@ void LineEditor::make_room() {
 }
 
 bool LineEditor::may_be_history(const std::string& file) {
+  if (is_named_pipe(file)) return false;
   std::ifstream in(file);
   std::string first;
   return !std::getline(in, first) || first == kHistoryMark;

@@ -11,6 +11,7 @@
 #include "app/paths.h"
 #include "app/recorder.h"
 #include "app/time_text.h"
+#include "systemc/core/input_file.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/machine/board_file.h"
 
@@ -21,9 +22,9 @@ namespace fs = std::filesystem;
 namespace {
 
 void need_file(const std::string& option, const std::string& file, const std::string& what) {
-  if (!fs::exists(file)) throw UsageError(fmt::format("{} {}: no such file; expected {}", option, file, what));
-  if (fs::is_directory(file) || !std::ifstream(file))
-    throw UsageError(fmt::format("{} {}: cannot be read; expected {}", option, file, what));
+  const std::string shown = fmt::format("{} {}", option, file);
+  if (!fs::exists(file)) throw UsageError(fmt::format("{}: no such file; expected {}", shown, what));
+  need_regular_file(file, what, shown);
 }
 
 std::uint32_t forced_bcr(const std::string& text) {

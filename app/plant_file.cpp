@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +10,7 @@
 #include "app/byte_text.h"
 #include "app/hand_encoder.h"
 #include "app/time_text.h"
+#include "systemc/core/input_file.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/machine/toml_table.h"
 
@@ -80,13 +79,6 @@ T one_of(const TomlTable& table, const std::string& key, const Names<T>& names) 
   table.fail(table.need(key), key, fmt::format("one of {}", fmt::join(known, ", ")));
 }
 
-std::string content_of(const std::string& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw UsageError(fmt::format("{}: cannot be read; expected a plant in TOML", path));
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 // Each reads one value into `to` where the file has it, and leaves it as it is where not.
 void read(const TomlTable& t, const std::string& key, double low, double high, const std::string& expected,
           double& to) {
@@ -122,7 +114,7 @@ void read_counts(const TomlTable& t, const std::string& key, double most, std::i
 class Reader {
  public:
   Reader(const std::string& path, std::uint32_t fitted)
-      : fitted_(fitted), root_(parse_toml(content_of(path), path)), file_(path, root_, kKeys) {
+      : fitted_(fitted), root_(parse_toml(read_input_file(path, "a plant in TOML"), path)), file_(path, root_, kKeys) {
     while (motor_place(fitted_, motors_ + 1)) ++motors_;
   }
 

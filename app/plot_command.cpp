@@ -23,6 +23,7 @@
 #include "app/byte_text.h"
 #include "app/commands.h"
 #include "app/time_text.h"
+#include "systemc/core/input_file.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick {
@@ -105,11 +106,9 @@ void check_rows(std::ifstream& in, const std::string& file, std::size_t columns,
 }
 
 std::vector<std::string> columns_of(const std::string& file, const Window& window) {
+  need_regular_file(file, "a record, as --record writes it");
   std::ifstream in(file);
   std::string line;
-  std::error_code ignored;
-  if (!in || fs::is_directory(file, ignored))
-    throw UsageError(fmt::format("{}: cannot be read; expected a record, as --record writes it", file));
   std::getline(in, line);
   std::vector<std::string> names = fields(line);
   if (names[0] != "time_ms" || names.size() < 2)

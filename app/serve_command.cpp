@@ -1,10 +1,10 @@
 // `brick serve`: a started controller behind the Ethernet port of a Brick (docs/ethernet.md).
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <regex>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,6 +20,7 @@
 #include "app/set_up.h"
 #include "app/simulation.h"
 #include "app/simulation_loop.h"
+#include "systemc/core/input_file.h"
 #include "systemc/core/usage_error.h"
 #include "testbench/host/communications_processor.h"
 
@@ -34,16 +35,17 @@ class AddressFile {
 
   // Four bytes; "" when there is none.
   std::string read() const {
-    std::ifstream in(name_);
-    unsigned bytes[4];
-    char dot[3];
-    if (name_.empty() || !in) return "";
-    in >> bytes[0] >> dot[0] >> bytes[1] >> dot[1] >> bytes[2] >> dot[2] >> bytes[3];
-    const auto is_byte = [](unsigned byte) { return byte <= UINT8_MAX; };
-    if (!in || !std::all_of(bytes, bytes + 4, is_byte) || std::count(dot, dot + 3, '.') != 3)
-      throw UsageError(fmt::format("{}: is no address; expected four numbers up to 255 with dots between them", name_));
+    constexpr const char* kExpected = "four numbers up to 255 with dots between them";
+    std::error_code none;
+    if (name_.empty() || !std::filesystem::exists(name_, none)) return "";
+    const std::string text = read_input_file(name_, kExpected);
+    static const std::regex kForm(R"((\d{1,3})\.(\d{1,3})\.(\d{1,3})\.(\d{1,3})\s*)");
+    std::smatch numbers;
     std::string address;
-    for (const unsigned byte : bytes) address.push_back(static_cast<char>(byte));
+    if (text.size() <= kLongest && std::regex_match(text, numbers, kForm))
+      for (std::size_t n = 1; n <= 4; ++n)
+        if (const int number = std::stoi(numbers[n]); number <= UINT8_MAX) address.push_back(static_cast<char>(number));
+    if (address.size() != 4) throw UsageError(fmt::format("{}: is no address; expected {}", name_, kExpected));
     return address;
   }
 
@@ -62,6 +64,7 @@ class AddressFile {
   const std::string& name() const { return name_; }
 
  private:
+  static constexpr std::size_t kLongest = 64;
   std::string name_;
 };
 

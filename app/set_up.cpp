@@ -1,25 +1,21 @@
 #include "app/set_up.h"
 
-#include <filesystem>
-#include <fstream>
 #include <ostream>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "app/paths.h"
 #include "app/script_player.h"
 #include "app/simulation.h"
-#include "systemc/core/usage_error.h"
+#include "systemc/core/input_file.h"
 
 namespace brick {
 
 SetUp::SetUp(const RunOptions& options) {
   if (options.load.empty()) return;
   const std::string path = setup_path(options.load);
-  std::ifstream in(path);
-  std::error_code ignored;
-  if (!in || std::filesystem::is_directory(path, ignored))
-    throw UsageError(fmt::format("--load {}: cannot be read; expected a command file", path));
+  std::istringstream in(read_input_file(path, "a command file", "--load " + path));
   script_ = read_script(in, path);
 }
 

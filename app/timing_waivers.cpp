@@ -1,15 +1,13 @@
 #include "app/timing_waivers.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "systemc/core/input_file.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/machine/toml_table.h"
 
@@ -21,12 +19,7 @@ constexpr const char* kAddressForm =
     "an address such as \"X:$078000\", \"I/O 0x213\" or \"memory 0x0D0000\", or a range of two with .. between";
 
 std::string read_file(const std::string& path) {
-  std::ifstream in(path);
-  std::stringstream text;
-  text << in.rdbuf();
-  if (!in || std::filesystem::is_directory(path))
-    throw UsageError(fmt::format("--waive \"{}\": cannot be read; expected a TOML file of waivers", path));
-  return text.str();
+  return read_input_file(path, "a TOML file of waivers", fmt::format("--waive \"{}\"", path));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <random>
@@ -17,6 +16,7 @@
 #include "app/options.h"
 #include "app/regress/result.h"
 #include "app/time_text.h"
+#include "systemc/core/input_file.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/machine/toml_table.h"
 
@@ -39,13 +39,6 @@ constexpr double kUsualLimit = 600, kLongestLimit = 7 * 86400.0;
 
 constexpr const char* kSeedsText = "seeds: 1, [1, 2, 7] or \"1-50\", up to 100000 of them";
 constexpr const char* kLimitText = "a time of the wall in quotes up to a week, for example \"120s\"";
-
-std::string content_of(const std::string& path) {
-  std::ifstream file(path);
-  if (!file || fs::is_directory(path))
-    throw UsageError(fmt::format("{}: cannot be read; expected a plan in TOML", path));
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 // One text, or a list of them; `otherwise` where the key is missing.
 std::vector<std::string> one_or_more(const TomlTable& row, const std::string& key, const std::string& otherwise) {
@@ -135,7 +128,7 @@ class Reader {
       : path_(path), benches_(benches), draw_(fresh_from) {}
 
   Plan read() {
-    const toml::table content = parse_toml(content_of(path_), path_);
+    const toml::table content = parse_toml(read_input_file(path_, "a plan in TOML"), path_);
     const TomlTable top(path_, content, kPlanKeys);
     plan_.title = top.has("title") ? top.text("title") : fs::path(path_).stem().string();
     for (const toml::node& row : top.array("row")) {

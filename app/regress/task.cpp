@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/regress/result.h"
+#include "systemc/core/input_file.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick::regress {
@@ -48,8 +49,7 @@ int task_command(const std::string& file) {
   constexpr std::chrono::milliseconds kEndOfTask{300};
   Task task;
   try {
-    std::ifstream in(file);
-    task = nlohmann::json::parse(in);
+    task = nlohmann::json::parse(read_input_file(file, "a file that `brick regress --slurm` wrote"));
   } catch (const nlohmann::json::exception&) {
     throw UsageError(fmt::format("{}: is no task; expected a file that `brick regress --slurm` wrote", file));
   }

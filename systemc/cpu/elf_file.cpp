@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
+#include "systemc/core/input_file.h"
 #include "systemc/cpu/cpu.h"
 
 namespace brick {
@@ -29,10 +27,8 @@ std::string hex(std::uint32_t v) {
 class Image {
  public:
   explicit Image(const std::string& path) : path_(path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) fail("cannot be read; expected an ELF program");
-    bytes_.assign(std::istreambuf_iterator<char>(file), {});
-    if (file.bad()) fail("cannot be read to its end; expected an ELF program");
+    const std::string bytes = read_input_file(path, "an ELF program");
+    bytes_.assign(bytes.begin(), bytes.end());
   }
   [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(path_ + ": " + what); }
   std::size_t size() const { return bytes_.size(); }

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "rtl/regs/brick_regs.hpp"
-#include "systemc/core/usage_error.h"
+#include "systemc/core/input_file.h"
 #include "systemc/machine/toml_table.h"
 
 namespace brick {
@@ -30,16 +29,10 @@ const std::vector<std::string> kKeys{"title",       "family",     "bus",        
 const std::vector<std::string> kBuses{"isa", "pci", "pc104", "internal"};
 const std::vector<std::string> kInterruptControllers{"pic", "8259"};
 
-std::string content_of(const std::string& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw UsageError(fmt::format("{}: cannot be read; expected a board file in TOML", path));
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 class Reader {
  public:
-  explicit Reader(const std::string& path) : root_(parse_toml(content_of(path), path)), file_(path, root_, kKeys) {}
+  explicit Reader(const std::string& path)
+      : root_(parse_toml(read_input_file(path, "a board file in TOML"), path)), file_(path, root_, kKeys) {}
 
   BoardConfig read() {
     BoardConfig board;

@@ -485,6 +485,37 @@ def bad_input():
             check(what in r.stderr and "expected" in r.stderr, f"{name}: {r.stderr}")
 
 
+def odd_files():
+    """A pipe to which nobody writes, a device without an end: an error, whatever reads it. A shell's pipe is read."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = pathlib.Path(folder)
+        os.mkfifo(place / "pipe")
+        for ending in ("toml", "pmc", "elf", "csv", "history"):
+            (place / f"pipe.{ending}").symlink_to(place / "pipe")
+            (place / f"zero.{ending}").symlink_to("/dev/zero")
+        (place / "flash").write_bytes(b"\xFF" * (1 << 20))
+        (place / "flash.address").symlink_to(place / "pipe")
+        for kind in ("pipe", "zero"):
+            for arguments, ending in ((["exec"], "pmc"), (["exec", "-", "--load"], "pmc"),
+                                      (["exec", "-", "--board"], "toml"), (["exec", "-", "--plant"], "toml"),
+                                      (["exec", "-", "--waive"], "toml"), (["exec", "-", "--firmware"], "elf"),
+                                      (["boards"], "toml"), (["regress"], "toml"), (["cpu"], "elf"),
+                                      (["plot"], "csv")):
+                file = f"{folder}/{kind}.{ending}"
+                r = brick(*arguments, file, script="", timeout=60)
+                check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"{arguments} {file}: {r}")
+                check(file in r.stderr and "expected" in r.stderr, f"{arguments}: {r.stderr}")
+        r = brick("serve", "--listen", "127.0.0.1:0", "--flash", f"{folder}/flash", timeout=60)
+        check(r.returncode == 2 and "flash.address: is no regular file; expected four numbers" in r.stderr, r.stderr)
+        r = brick("console", "--history", f"{folder}/pipe.history", script="", timeout=60)
+        check(r.returncode == 2 and "expected" in r.stderr, r.stderr)
+        r = brick("exec", "/dev/stdin", script="I16\n")
+        check(r.returncode == 0 and r.stdout == "5\n", f"/dev/stdin: {r}")
+        r = subprocess.run(["bash", "-c", f"{command.BRICK} exec <(echo I16) --load <(echo I16=7)"],
+                           capture_output=True, text=True, timeout=60, check=False)
+        check(r.returncode == 0 and r.stdout == "7\n", f"<(...): {r}")
+
+
 # covers: WDT-1 WDT-2
 def dead_flash():
     """A flash file with settings that stop the controller outlives the process; jumper E3 and SAVE repair it."""

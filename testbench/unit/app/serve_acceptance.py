@@ -210,7 +210,7 @@ def serve_ends():
                 check(said.count("No space left on device") == 1 and "stopped by SIGTERM" in said, said)
             full.unlink()
         check(made["passed"] and all(key in made for key in ("build", "image", "command")), str(made.keys()))
-        for bad in ("somewhere\n", "", "999.1.2.3\n", "1,2,3,4\n", "-1.2.3.4\n"):
+        for bad in ("somewhere\n", "", "999.1.2.3\n", "1,2,3,4\n", "-1.2.3.4\n", "1.2.3.4.5\n", "1.2.3.256\n"):
             (pathlib.Path(folder) / "flash.bin.address").write_text(bad, encoding="ascii")
             r = brick("serve", "--listen", "127.0.0.1:0", "--flash", file)
             check(r.returncode == 2 and "flash.bin.address: is no address; expected" in r.stderr, f"{bad}: {r.stderr}")
