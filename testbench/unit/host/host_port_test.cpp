@@ -123,11 +123,13 @@ TEST_F(HostPortTest, SleepsWhileNothingMoves) {
 TEST_F(HostPortTest, WithoutSelectNothingHappens) {
   both_.in.hp_wr = both_.in.dsp_we = true;
   both_.in.hp_wdata = 0xFF;
-  both_.in.dsp_addr = kHcr;
   both_.in.dsp_wdata = 0x1F;
-  both_.ref(2);
-  EXPECT_EQ(host_peek(kIcr), 0u);
-  EXPECT_EQ(cpu_peek(kHcr), 0u);
+  for (const std::uint8_t addr : {kHcr, kHpcr, kHbar}) {
+    const std::uint32_t before = cpu_peek(addr);
+    both_.ref(2);
+    EXPECT_EQ(host_peek(kIcr), 0u);
+    EXPECT_EQ(cpu_peek(addr), before) << int{addr};
+  }
 }
 
 TEST_F(HostPortTest, FlagsCrossInBothDirections) {
