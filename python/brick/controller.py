@@ -320,7 +320,7 @@ class Controller:
         return Record(self.call, of, None if file is None else place(file))
 
     def failures(self) -> list[str]:
-        """Rules of the buses that were broken, and clocks with two sources, so far: one line each."""
+        """Broken rules of the buses, clocks with two sources, exceptions of the CPU, so far: one line each."""
         failures: list[str] = self.call("check")["failures"]
         return failures
 

@@ -35,7 +35,10 @@ class MotorOff(BrickError):
 
 
 class RulesBroken(BrickError):
-    """At the end: a rule of the buses was broken, or two sources drove the clocks. failures: one line each."""
+    """At the end: a rule of the buses was broken, two sources drove the clocks, or the firmware raised an exception.
+
+    failures: one line each.
+    """
 
     def __init__(self, failures: list[str]) -> None:
         super().__init__("; ".join(failures))

@@ -122,6 +122,8 @@ void Cpu::set_interrupt(CpuInterrupt line, bool pending) {
   if ((s.mip & s.mie) != 0) s.sleeping = false;
 }
 
+void Cpu::stop_at_exceptions(bool stop) { s_->stops_at_exceptions = stop; }
+
 void Cpu::watch_store(std::uint32_t address) {
   s_->watched.push_back(address & ~3u);
   s_->forget_translations();

@@ -85,14 +85,17 @@ class Cpu {
   // mie.
   void set_interrupt(CpuInterrupt line, bool pending);
 
-  // Runs until cycle() >= limit, a device access has been made, WFI sleeps, or a watched store asks to halt;
-  // never starts an instruction at or after `limit`.
-  enum class Stop { kLimit, kDevice, kSleep, kHalt };
+  // Runs until cycle() >= limit, a device access has been made, WFI sleeps, a watched store asks to halt, or the CPU
+  // stands before the handler of an exception and stop_at_exceptions() was asked for; never starts an instruction at or
+  // after `limit`.
+  enum class Stop { kLimit, kDevice, kSleep, kHalt, kException };
   Stop run(Cycle limit);
+  void stop_at_exceptions(bool stop);  // of a device access: kDevice
 
   // Hooks (empty = off, cost nothing) ---------------------------------------------------------------------------------
-  std::function<void(std::uint32_t pc, Cycle)> on_flow;                       // calls and returns (jal/jalr with ra)
-  std::function<void(std::uint32_t cause, std::uint32_t pc, Cycle)> on_trap;  // trap taken, pc interrupted
+  std::function<void(std::uint32_t pc, Cycle)> on_flow;  // calls and returns (jal/jalr with ra)
+  std::function<void(std::uint32_t cause, std::uint32_t pc, Cycle)>
+      on_trap;  // trap taken, pc interrupted; mepc, mcause and mtval hold it
   std::function<void(std::uint32_t pc, Cycle)> on_mret;
   // After each instruction and each entry of a trap, which is told behind on_trap: where it stood, what it took.
   std::function<void(std::uint32_t pc, Cycle cycles)> on_instruction;

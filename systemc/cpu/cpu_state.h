@@ -135,6 +135,7 @@ struct Cpu::State {
   std::uint32_t value = 0;       // result of a slow load
   std::uint32_t fault = 0;       // cause after Access::kFault
   bool device_accessed = false;  // the fault came from a device
+  bool stops_at_exceptions = false;
   bool access_waits = false;  // the instruction at pc has begun its device access: no interrupt may come before its end
 };
 

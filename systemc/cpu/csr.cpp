@@ -158,10 +158,10 @@ std::uint32_t Cpu::State::interrupt_cause() const {
 }
 
 std::uint32_t Cpu::State::trap(std::uint32_t cause, std::uint32_t at, std::uint32_t tval) {
-  if (cpu.on_trap) cpu.on_trap(cause, at, cycle);
   mepc = at;
   mcause = cause;
   mtval = tval;
+  if (cpu.on_trap) cpu.on_trap(cause, at, cycle);
   interrupts_were = interrupts_on;
   interrupts_on = false;
   cycle += cost::kTrap;

@@ -185,7 +185,7 @@ look_up:
     s.retired = retired;
     target = s.trap(kFetchFault, target, target);
     cycle = s.cycle;
-    goto boundary;
+    goto trapped;
   }
   d = &page->entry[(target & ~kPageMask) / 2];
   goto* kLabels[static_cast<unsigned>(d->op)];
@@ -204,6 +204,11 @@ exception:  // the instruction at d does not retire
     s.device_accessed = false;
     s.pc = target;
     return Stop::kDevice;
+  }
+trapped:  // by an exception
+  if (__builtin_expect(s.stops_at_exceptions, 0)) {
+    s.pc = target;
+    return Stop::kException;
   }
   goto boundary;
 

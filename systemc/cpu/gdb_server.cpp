@@ -13,12 +13,29 @@ namespace brick {
 namespace {
 
 constexpr unsigned kStackPointer = 2;
-constexpr const char* kBusErrorStop = "T0athread:1;";  // GDB's number of SIGBUS
+// GDB's numbers of signals.
+constexpr unsigned kSigInt = 2, kSigIll = 4, kSigTrap = 5, kSigBus = 10, kSigSegv = 11, kSigSys = 12;
 constexpr unsigned kMcause = 0x342;
 constexpr std::uint32_t kInterrupt = 0x8000'0000;
 constexpr auto kLookEvery = std::chrono::milliseconds(5);
 constexpr unsigned kInstructionsPerLook = 1024;
 constexpr Cycle kCyclesPerLook = 100'000;
+
+unsigned signal_of(std::uint32_t cause) {
+  switch (cause) {
+    case 2:
+      return kSigIll;
+    case 3:
+      return kSigTrap;
+    case 4:
+    case 6:  // misaligned
+      return kSigBus;
+    case 11:
+      return kSigSys;
+    default:
+      return kSigSegv;
+  }
+}
 
 struct DataAccess {
   bool write = false;
@@ -115,7 +132,10 @@ void GdbServer::Impl::before_instruction() {
 std::string GdbServer::Impl::stop_reason() {
   if (pending != Pending::kNone) {
     const Pending why = std::exchange(pending, Pending::kNone);
-    return why == Pending::kAttach ? "attach" : why == Pending::kBusError ? kBusErrorStop : "T02thread:1;";
+    if (why == Pending::kAttach) return "attach";
+    std::string text = "T";
+    gdb::put_byte(text, static_cast<std::uint8_t>(why == Pending::kSignal ? signal : kSigInt));
+    return text + "thread:1;";
   }
   if (!watch_hit.empty()) {
     std::string hit;
@@ -185,9 +205,19 @@ void GdbServer::Impl::detach() {
   resumed = true;
 }
 
-GdbServer::GdbServer(Cpu& cpu, std::uint16_t port) : impl_(std::make_unique<Impl>(cpu, port)) {}
+void GdbServer::Impl::raise(unsigned number, const std::string& text) {
+  if (!link.connected()) return;
+  pending = Pending::kSignal;
+  signal = number;
+  console += text + "\n";
+}
+
+GdbServer::GdbServer(Cpu& cpu, std::uint16_t port) : impl_(std::make_unique<Impl>(cpu, port)) {
+  cpu.stop_at_exceptions(true);
+}
 
 GdbServer::~GdbServer() {
+  impl_->cpu.stop_at_exceptions(false);
   if (impl_->link.connected() && impl_->stop_owed) impl_->link.send("W00");
 }
 
@@ -198,11 +228,9 @@ Cpu::Stop GdbServer::run(Cycle limit) {
   return impl_->run(limit);
 }
 
-void GdbServer::bus_error(const std::string& text) {
-  if (!impl_->link.connected()) return;
-  impl_->pending = Impl::Pending::kBusError;
-  impl_->console += text + "\n";
-}
+void GdbServer::bus_error(const std::string& text) { impl_->raise(kSigBus, text); }
+
+void GdbServer::exception(std::uint32_t cause, const std::string& text) { impl_->raise(signal_of(cause), text); }
 
 void GdbServer::poll(bool idle) {
   impl_->look();

@@ -38,6 +38,10 @@ class GdbServer {
   // and the program stops behind the instruction as if a bus error had been signalled.
   void bus_error(const std::string& text);
 
+  // The program has raised an exception (mcause): the same with the signal that stands for it, before the handler's
+  // first instruction.
+  void exception(std::uint32_t cause, const std::string& text);
+
   std::function<std::string()> on_time;  // answer to `monitor time`
 
  private:

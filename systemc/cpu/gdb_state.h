@@ -23,10 +23,11 @@ struct GdbServer::Impl {
   std::string stop_reason();  // "" = go on
   void look();
   void stop(const std::string& reason);
+  void raise(unsigned number, const std::string& text);
   void serve();
   void detach();
   bool stepwise() const {
-    return pending == Pending::kBusError || stepping || !breakpoints[0].empty() || !breakpoints[1].empty() ||
+    return pending == Pending::kSignal || stepping || !breakpoints[0].empty() || !breakpoints[1].empty() ||
            !watches.empty();
   }
 
@@ -48,8 +49,9 @@ struct GdbServer::Impl {
   GdbLink link;
   std::function<std::string()> on_time;
 
-  enum class Pending { kNone, kBreak, kAttach, kBusError } pending = Pending::kNone;
-  std::string console;     // what a bus error has to say
+  enum class Pending { kNone, kBreak, kAttach, kSignal } pending = Pending::kNone;
+  unsigned signal = 0;     // GDB's number, of kSignal
+  std::string console;     // what a signal has to say
   bool waiting = true;     // for the first debugger
   bool resumed = false;    // set by the packet that lets the program go on
   bool stop_owed = false;  // the program runs and a connected debugger waits for news

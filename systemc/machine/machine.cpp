@@ -60,9 +60,10 @@ IsaStraps isa_straps(const BoardConfig& board) {
 
 PciBridge::Local pci_local(const BoardConfig& board) { return {board.io_base, board.window, 2 * board.dpram_words}; }
 
+constexpr std::uint32_t kInterrupt = 0x8000'0000;  // in mcause
+
 std::uint32_t trap_handler(const Cpu& cpu, std::uint32_t cause) {
   constexpr unsigned kMtvec = 0x305;
-  constexpr std::uint32_t kInterrupt = 0x8000'0000;
   const std::uint32_t vector = cpu.csr(kMtvec);
   const bool vectored = (vector & 1) != 0 && (cause & kInterrupt) != 0;
   return (vector & ~3u) + (vectored ? 4 * (cause & ~kInterrupt) : 0);
@@ -120,8 +121,9 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
   if (config.bcr) port_a.force_wait_states(*config.bcr);
   port_a.on_cycle = [this](const PortACycle& c) { cycle_done(c); };
   port_a.on_control = [this] { main_memory_wait(); };
-  cpu.on_trap = [this](std::uint32_t cause, std::uint32_t, Cycle c) {
+  cpu.on_trap = [this](std::uint32_t cause, std::uint32_t pc, Cycle c) {
     const TimeFs time = port_a.clock().time(c);
+    if ((cause & kInterrupt) == 0) exception(cause, pc, time);
     named.trap(time, cause);
     if (owner.on_task) owner.on_task(time);
     if (tracing_cpu) named.pc(time, trap_handler(cpu, cause), elf.get());
@@ -152,6 +154,13 @@ void Machine::Impl::keep_flash() {
     if (std::find(run_errors.begin(), run_errors.end(), e.what()) == run_errors.end())
       run_errors.emplace_back(e.what());
   }
+}
+
+void Machine::Impl::exception(std::uint32_t cause, std::uint32_t pc, TimeFs time) {
+  constexpr unsigned kMtval = 0x343, kReturnAddress = 1;
+  const CpuFault fault{cause, cpu.csr(kMtval), pc, cpu.reg(kReturnAddress), time};
+  faults.add(fault);
+  if (debugger != nullptr) debugger->exception(cause, "exception of the CPU: " + fault_text(fault, elf.get()));
 }
 
 void Machine::Impl::power_on() {
@@ -330,6 +339,8 @@ void Machine::attach_port_a_watch(PortAWatch* watch) {
   impl_->port_a.set_watch(watch);
 }
 std::string Machine::function_at(std::uint32_t pc) const { return impl_->elf ? impl_->elf->symbol_at(pc) : ""; }
+std::string Machine::cpu_place() const { return place_in_code(impl_->elf.get(), impl_->cpu.pc()); }
+std::string Machine::last_exception() const { return impl_->faults.last(impl_->elf.get()); }
 unsigned Machine::task() const { return impl_->named.task(); }
 
 void Machine::reset() { impl_->begin_reset(false); }
@@ -339,8 +350,17 @@ void Machine::set_jumper_e3(bool on) {
 }
 const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->bus_cycles; }
 
-const std::vector<std::string>& Machine::run_errors() const { return impl_->run_errors; }
-std::vector<std::string> Machine::take_run_errors() { return std::exchange(impl_->run_errors, {}); }
+std::vector<std::string> Machine::run_errors() const {
+  std::vector<std::string> errors = impl_->run_errors;
+  for (std::string& text : impl_->faults.texts(impl_->elf.get())) errors.push_back(std::move(text));
+  return errors;
+}
+std::vector<std::string> Machine::take_run_errors() {
+  std::vector<std::string> errors = run_errors();
+  impl_->run_errors.clear();
+  impl_->faults.clear();
+  return errors;
+}
 
 PciBridge* Machine::pci() { return impl_->pci.get(); }
 

@@ -140,6 +140,8 @@ class Machine : public sc_core::sc_module {
   // Not owned; nullptr = none. It sees the lines of Port A move (systemc/cpu/port_a_watch.h).
   void attach_port_a_watch(PortAWatch* watch);
   std::string function_at(std::uint32_t pc) const;  // name of the firmware's function, "" if none holds pc
+  std::string cpu_place() const;                    // where the CPU stands: pc and its function
+  std::string last_exception() const;               // of the CPU, "" = none yet, or taken
   unsigned task() const;                            // cpu.task
 
   void reset();                 // pulls the reset line: board and CPU start again, RAM and flash keep their content
@@ -158,9 +160,9 @@ class Machine : public sc_core::sc_module {
   const std::vector<BusCycle>& last_bus_cycles() const;  // the last 16 or more
 
   // What no sound set-up does, one line each, oldest first: two sources of the clocks (docs/clock_select.md), a flash
-  // file that cannot be written. A caller that provokes it on purpose takes the list; `brick run` and `brick exec` fail
-  // when something is left in it.
-  const std::vector<std::string>& run_errors() const;
+  // file that cannot be written; behind them exceptions of the CPU (docs/firmware.md). A caller that provokes it on
+  // purpose takes the list; `brick run` and `brick exec` fail when something is left in it.
+  std::vector<std::string> run_errors() const;
   std::vector<std::string> take_run_errors();
 
   // Called at the end of each Port A cycle with the exact times of all its edges (systemc/cpu/port_a.h), for checkers.

@@ -11,6 +11,7 @@
 #include "systemc/cpu/port_a.h"
 #include "systemc/host/pci_bridge.h"
 #include "systemc/machine/clock_drivers.h"
+#include "systemc/machine/cpu_faults.h"
 #include "systemc/machine/machine.h"
 #include "systemc/machine/machine_signals.h"
 #include "systemc/machine/memory.h"
@@ -67,6 +68,7 @@ struct Machine::Impl {
   void see_init();
   void drive_ssi();
   void keep_flash();
+  void exception(std::uint32_t cause, std::uint32_t pc, TimeFs time);
 
   // run.cpp: the run-ahead rule
   Tick run_until(Tick limit, const BoardOutputs& stop_on);
@@ -115,7 +117,8 @@ struct Machine::Impl {
   bool tracing_cpu = false;
   std::vector<BusCycle> bus_cycles;
   ClockDrivers clock_drivers;
-  std::vector<std::string> run_errors;
+  std::vector<std::string> run_errors;  // but for exceptions
+  CpuFaults faults;
   std::optional<TimeFs> kernel_offset;  // kernel time at the machine's tick 0
 };
 

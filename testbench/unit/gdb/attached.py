@@ -5,7 +5,11 @@ import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import time
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "app"))
+import faulty_image
 
 BRICK, CASE = sys.argv[1], sys.argv[2]
 FIRMWARE = pathlib.Path(BRICK).parent / "turbo.elf"
@@ -148,5 +152,23 @@ def gdb_session():
     check(status == 0 and out.startswith("1.947\n"), f"after the session: status {status}: {out} {err}")
 
 
-CASES = (same_results, bad_port, kill, break_byte, gdb_session)
+def exception():
+    """The firmware raises one: the debugger sees which, and where; the run goes on and fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        pc = symbol("card")
+        image = faulty_image.with_words(folder, "card", faulty_image.ILLEGAL)
+        run = Run("--firmware", image, script="CID\n@wait 50ms\n")
+        debugger = Debugger(run.port)
+        said = bytes.fromhex(debugger.ask("c")[1:]).decode()
+        expected = rf"exception of the CPU: illegal instruction 0xffffffff, pc {pc:#010x} \(card\), at \d+\.\d+ ms\n"
+        check(re.fullmatch(expected, said), f"console: {said!r}")
+        check(debugger.reply() == "T04thread:1;", "SIGILL")
+        check(int.from_bytes(bytes.fromhex(debugger.ask("p20")), "little") == symbol("trap_vector"), "pc")
+        check(int.from_bytes(bytes.fromhex(debugger.ask("p382")), "little") == pc, "mepc")
+        check(debugger.ask("c") == "W00", "the firmware restarts")
+        status, _, err = run.end()
+        check(status == 1 and re.search("^brick exec: " + expected[:-2], err, re.M), f"{status} {err!r}")
+
+
+CASES = (same_results, bad_port, kill, break_byte, gdb_session, exception)
 {case.__name__: case for case in CASES}[CASE]()

@@ -96,6 +96,33 @@ TEST_F(GdbRunControl, StepGoesThroughAnInterruptHandler) {
   EXPECT_EQ(ask("pf"), shown(5)) << "and so has the instruction";
 }
 
+// With GDB's numbers: 4 illegal instruction, 5 trap, 10 bus error, 11 segmentation fault, 12 bad system call. Stopped
+// before the handler, at +0x100, continued or stepped; what the machine says of it comes first.
+TEST_F(GdbRunControl, StopsAtAnExceptionOfTheProgram) {
+  using namespace rv;
+  cpu.on_trap = [this](std::uint32_t cause, std::uint32_t, Cycle) { server->exception(cause, "why"); };
+  const std::vector<std::pair<Word, const char*>> faults = {
+      {0xFFFF'FFFF, "T04thread:1;"},   {ebreak(), "T05thread:1;"},
+      {lw(a2, a5, 1), "T0athread:1;"}, {rv::s(2, a0, a5, 1), "T0athread:1;"},
+      {lw(a2, a5, 0), "T0bthread:1;"}, {rv::s(2, a0, a5, 0), "T0bthread:1;"},
+      {ecall(), "T0cthread:1;"}};
+  const Word to_handler = rv::i(0x73, 1, zero, a3, 0x305);
+  for (const char* how : {"c", "s"})
+    for (const auto& [word, stop] : faults) {
+      std::memcpy(cpu.memory(kCode + 0x40, 4), &to_handler, 4);
+      std::memcpy(cpu.memory(kCode + 0x44, 4), &word, 4);
+      cpu.invalidate_code();
+      ASSERT_EQ(ask("Pd=" + shown(kCode + 0x100)), "OK");
+      ASSERT_EQ(ask("Pf=" + shown(0x5000'0000)), "OK");
+      ASSERT_EQ(ask("P20=" + shown(kCode + 0x40)), "OK");
+      ASSERT_EQ(ask("s"), "T05thread:1;");
+      EXPECT_EQ(ask(how), "O7768790a") << "on the console";
+      EXPECT_EQ(reply(), stop);
+      EXPECT_EQ(ask("p20"), shown(kCode + 0x100));
+      EXPECT_EQ(ask("p382"), shown(kCode + 0x44)) << "mepc";
+    }
+}
+
 TEST_F(GdbRunControl, DetachLetsTheProgramRunOn) {
   ASSERT_EQ(ask("Z0,10000008,4"), "OK");
   EXPECT_EQ(ask("D"), "OK");

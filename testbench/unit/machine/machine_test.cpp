@@ -56,6 +56,33 @@ TEST(Machine, RefusedAccessesAreFaults) {
   EXPECT_EQ(rig.y(0x103), 7u) << "byte store";
 }
 
+// What programs/fault.S does, at its addresses.
+TEST(Machine, TellsExceptionsOfItsCpu) {
+  for (const Engine engine : {Engine::kSystemC, Engine::kRtl}) {
+    MachineConfig config;
+    config.engine = engine;
+    MachineRig rig("fault", config);
+    rig.machine.run_until(kMs / 10);
+    const auto errors = rig.machine.run_errors();
+    ASSERT_EQ(errors.size(), 2u);
+    EXPECT_THAT(errors[0], ::testing::MatchesRegex("exception of the CPU: load access fault at 0xc0200004, "
+                                                   "pc 0x100000[0-9a-f]+ \\(_start\\), at 0\\.00[0-9]+ ms; .*"));
+    EXPECT_THAT(errors[1], ::testing::StartsWith("exceptions of the CPU: 2 more, the last: store access fault at "
+                                                 "0xc03c0004, pc 0x100000"));
+    EXPECT_EQ(errors[1], "exceptions of the CPU: 2 more, the last: " + rig.machine.last_exception());
+    EXPECT_EQ(rig.machine.take_run_errors(), errors);
+    EXPECT_TRUE(rig.machine.run_errors().empty()) << "taken";
+  }
+}
+
+TEST(Machine, InterruptsAreNoExceptions) {
+  MachineRig rig("probe");
+  rig.machine.run_until(2 * kMs);
+  EXPECT_GT(rig.machine.instructions(), 1000u);
+  EXPECT_TRUE(rig.machine.run_errors().empty());
+  EXPECT_EQ(rig.machine.last_exception(), "");
+}
+
 TEST(Machine, ResetKeepsRamAndPowerCycleLosesIt) {
   MachineRig rig("probe");
   rig.machine.run_until(kMs);

@@ -1,6 +1,8 @@
 """brick.Controller (docs/python.md): what it does to the controller, and that it does it twice alike."""
 
+import contextlib
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -10,6 +12,9 @@ import brick
 import numpy
 import pytest
 from support import PATIENCE, gone
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "app"))
+import faulty_image
 
 
 def test_variables_are_items(moving):
@@ -146,6 +151,17 @@ def test_an_end_that_failed_is_an_error():
     # It shall end by the signal and not by the end of the socket that close() makes behind this.
     c.failures = lambda: os.kill(c.pid, signal.SIGTERM) or time.sleep(1) or []
     with pytest.raises(brick.ControllerGone, match="SIGTERM"):
+        c.close()
+
+
+def test_an_exception_of_the_cpu_breaks_a_rule(tmp_path):
+    image = faulty_image.with_words(tmp_path, "card", faulty_image.STORE)
+    c = brick.Controller(options=["--firmware", image])
+    assert c.failures() == []
+    with contextlib.suppress(brick.NoAnswer):
+        c.command("CID")
+    c.run(ms=20)
+    with pytest.raises(brick.RulesBroken, match=r"^exception of the CPU: store access fault at 0x0+, pc .* \(card\)"):
         c.close()
 
 

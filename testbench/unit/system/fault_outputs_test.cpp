@@ -48,6 +48,8 @@ TEST_P(FaultOutputs, OfEveryServoIcGoOff) {
   EXPECT_EQ(machine().outputs().get(pin::kCtrl0) + machine().outputs().get(pin::kCtrl1), 0u);
   ASSERT_TRUE(link().connect(machine().now() + ms_to_ticks(100))) << "it starts anew";
   EXPECT_EQ(ask("RX$70"), "2");
+  EXPECT_THAT(machine().take_run_errors(), ::testing::ElementsAre(::testing::HasSubstr(
+                                               "illegal instruction 0xffffffff, pc 0x200f0000, return address 0x1")));
   EXPECT_EQ(ics(true), 0u);
 }
 
