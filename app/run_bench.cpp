@@ -9,6 +9,7 @@
 #include "app/build_info.h"
 #include "app/hand_encoder.h"
 #include "app/script_player.h"
+#include "app/session_end.h"
 #include "app/set_up.h"
 #include "app/simulation.h"
 #include "systemc/core/usage_error.h"
@@ -100,13 +101,16 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
                            config.aperture > 0 ? fmt::format(", aperture {} ns", options.aperture) : "",
                            config.skew ? ", skew" : "", negative ? ", NEGATIVE CONTROL: " + bench.negative.does : "");
   BenchReport report(std::cout, simulation.machine());
+  bool answered = false;
   try {
     simulation.run([&] {
       if (bench.firmware) {
         const bool up = simulation.link().connect(HostLink::kBootTime);
-        report.step("controller answers", up,
-                    up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
+        report.step(
+            "controller answers", up,
+            up ? "I3=2 I6=1 I4=0" : no_answer(simulation) + ", expected an acknowledge within 500 ms of power-on");
         if (!up) return;
+        answered = true;
         set_up.send(simulation);
       }
       BenchContext context{simulation.machine(),
@@ -130,6 +134,8 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
   } catch (const Interrupted& e) { report.fail("run to its end", e.what()); } catch (const std::exception& e) {
     report.fail("no error of the run", e.what());  // a file of results, for example
   }
+  if (answered && !negative && !report.passed() && simulation.bus().tripped())
+    report.fail("watchdog at the end", "has tripped, the CPU stands at " + simulation.machine().cpu_place());
   for (const std::string& error : simulation.machine().take_run_errors()) {
     report.fail("no error of the machine", error);
     std::cerr << "brick " << extras.command << ": " << error << '\n';

@@ -127,9 +127,13 @@ void ScriptPlayer::command(const ScriptLine& line) {
     }
   }
   if (!reply.complete && reply.doubt.empty()) {
+    Machine& machine = link_.bus().machine();
     if (link_.bus().tripped())
-      fail(line, "no reply: the watchdog has tripped (WDO); expected an answer, see @reset and @power");
-    fail(line, reply.raw.empty() ? "no reply; expected an acknowledge or an error from the controller"
+      fail(line, fmt::format("no reply: the watchdog has tripped (WDO), the CPU stands at {}; expected an answer, "
+                             "see @reset and @power",
+                             machine.cpu_place()));
+    const std::string where = machine.cpu().asleep() ? "" : ", the CPU stands at " + machine.cpu_place();
+    fail(line, reply.raw.empty() ? "no reply" + where + "; expected an acknowledge or an error from the controller"
                                  : fmt::format("the reply has no end: {}; expected an acknowledge or an error",
                                                beginning_of(reply.raw)));
   }

@@ -126,7 +126,9 @@ int serve_command(const ServeOptions& options) {
       }
       if (!processor.start(HostLink::kBootTime))
         throw std::runtime_error(
-            "the controller does not answer after power-on; expected an answer within 500 ms, see --jumper E3");
+            fmt::format("the controller does not answer after power-on: {}; expected an answer within 500 ms, see "
+                        "--jumper E3",
+                        no_answer(simulation)));
       std::cout << fmt::format("listening on {}, TCP and UDP", server.place()) << std::endl;
       if (page) show(*page, tell);
       server.start();
@@ -150,6 +152,7 @@ int serve_command(const ServeOptions& options) {
     results["seed"] = config.seed;
     results["passed"] = failures.empty();
     if (!failures.empty()) results["failure"] = utf8_text(failures.front());
+    results["failures"] = failures_json(failures);
     add_origin(results, config.firmware);
     write_json(options.run.json, results);
   }

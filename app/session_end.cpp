@@ -26,13 +26,27 @@ nlohmann::json exchanges_json(const ScriptPlayer& player) {
 
 }  // namespace
 
+nlohmann::json failures_json(const std::vector<std::string>& failures) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const std::string& text : failures) list.push_back(utf8_text(text));
+  return list;
+}
+
+std::string no_answer(Simulation& simulation) {
+  Machine& machine = simulation.machine();
+  const std::string fault = machine.last_exception();
+  return fmt::format("nothing in {:.3f} ms{}, the CPU {} {}{}", static_cast<double>(machine.now_fs()) * 1e-12,
+                     simulation.bus().tripped() ? ", the watchdog has tripped" : "",
+                     machine.cpu().asleep() ? "sleeps at" : "stands at", machine.cpu_place(),
+                     fault.empty() ? "" : ", its last exception: " + fault);
+}
+
 void connect_at_start(Simulation& simulation) {
   if (simulation.link().connect(HostLink::kBootTime)) return;
   throw ScriptFailure(
-      simulation.bus().tripped()
-          ? "the controller does not answer after power-on: the watchdog has tripped; expected an acknowledge, "
-            "see --jumper E3"
-          : "the controller does not answer after power-on; expected an acknowledge within 500 ms");
+      fmt::format("the controller does not answer after power-on: {}; expected an acknowledge within 500 ms, "
+                  "see --jumper E3",
+                  no_answer(simulation)));
 }
 
 int end_session(Simulation& simulation, const ScriptPlayer& player, const RunOptions& options,
@@ -54,6 +68,7 @@ int end_session(Simulation& simulation, const ScriptPlayer& player, const RunOpt
     results["seed"] = config.seed;
     results["passed"] = failures.empty();
     if (!failures.empty()) results["failure"] = utf8_text(failures.front());
+    results["failures"] = failures_json(failures);
     results["exchanges"] = exchanges_json(player);
     add_origin(results, config.firmware);
     write_json(options.json, results);

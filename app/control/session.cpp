@@ -155,7 +155,9 @@ json ControlSession::command(RpcParams& params) {
   if (!reply.complete)
     throw RpcError(rpc::kNoAnswer,
                    fmt::format("{}: no answer{}; expected an acknowledge or an error", beginning_of(line),
-                               simulation_.bus().tripped() ? ": the watchdog has tripped" : ""),
+                               simulation_.bus().tripped() ? ": the watchdog has tripped, the CPU stands at " +
+                                                                 simulation_.machine().cpu_place()
+                                                           : ""),
                    result);
   return result;
 }

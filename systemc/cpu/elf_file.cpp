@@ -164,6 +164,18 @@ void ElfFile::load(Cpu& cpu) const {
     std::fill(place + s.data.size(), place + s.memory_size, std::uint8_t{0});
   }
   cpu.invalidate_code();
+  check_entry();
+}
+
+void ElfFile::check_entry() const {
+  const auto wrong = [this](const char* what) {
+    throw std::runtime_error(path_ + ": entry point " + hex(entry_) + " " + what);
+  };
+  if (entry_ % 2 != 0) wrong("is odd; expected the address of an instruction");
+  const bool loaded = std::any_of(segments_.begin(), segments_.end(), [this](const Segment& s) {
+    return entry_ >= s.address && entry_ - s.address < s.memory_size;
+  });
+  if (!loaded) wrong("lies outside memory; expected it in a loaded segment");
 }
 
 }  // namespace brick

@@ -31,8 +31,9 @@ class ElfFile {
   std::optional<std::uint32_t> symbol(const std::string& name) const;
   const std::string& symbol_at(std::uint32_t address) const;  // name of the function that holds the address, "" if none
   bool begins_function(std::uint32_t address) const { return functions_.count(address) != 0; }
-  void load(Cpu& cpu) const;  // every segment must lie in mapped memory
+  void load(Cpu& cpu) const;  // every segment must lie in mapped memory, and the entry point in a segment
  private:
+  void check_entry() const;
   std::string path_;
   std::vector<Segment> segments_;
   std::uint32_t entry_ = 0;

@@ -133,6 +133,23 @@ TEST(ElfFile, SegmentOutsideMemory) {
   }
 }
 
+// In the ELF header at 24.
+TEST(ElfFile, EntryPointThatIsNone) {
+  const auto error_with = [](std::uint32_t entry) -> std::string {
+    const Changed file([entry](Bytes& b) { put(b, 24, entry, 4); });
+    Cpu cpu;
+    cpu.map(0x8000'0000, 1 << 20, {});
+    try {
+      ElfFile(file.path()).load(cpu);
+    } catch (const std::runtime_error& e) { return e.what(); }
+    return "no error";
+  };
+  EXPECT_EQ(error_with(0x8000'0002), "no error");
+  EXPECT_THAT(error_with(0x8000'0001), HasSubstr("entry point 0x80000001 is odd; expected"));
+  EXPECT_THAT(error_with(0x7FFF'FFFE), HasSubstr("entry point 0x7ffffffe lies outside memory; expected it in a"));
+  EXPECT_THAT(error_with(0x800F'FFF0), HasSubstr("lies outside memory")) << "mapped, but nothing is loaded there";
+}
+
 TEST(ElfFile, UnreadableFiles) {
   EXPECT_THAT(error_of("/nowhere/x.elf"), AllOf(HasSubstr("/nowhere/x.elf: cannot be read"), HasSubstr("expected")));
   EXPECT_THAT(error_of("/tmp"), HasSubstr("/tmp: cannot be read"));
