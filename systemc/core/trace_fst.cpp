@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "systemc/core/fst_map.h"
 #include "systemc/core/trace_formats.h"
 #include "systemc/core/trace_queue.h"
 
@@ -89,7 +90,9 @@ class FstWriter : public TraceQueue {
   }
   void finish() override {
     context_.reset();
-    if (!is_whole(name_)) throw std::runtime_error(name_ + ": cannot write the waveform: no room for all of it");
+    const bool parts_whole = take_short_fst_files() == 0;
+    if (!parts_whole || !is_whole(name_))
+      throw std::runtime_error(name_ + ": cannot write the waveform: no room for all of it");
   }
 
   struct Closer {

@@ -61,6 +61,7 @@ def results_lost():
             results.unlink()
             check(made["verdict"] == "FAIL" and name in made["steps"][-1]["detail"], f"{option}: {made['steps'][-1]}")
         room_ends(folder)
+        no_room_for_fst(folder)
         r = subprocess.run([command.BRICK, "run", "smoke", "--cover", f"{folder}/c"], capture_output=True, text=True,
                            env={**os.environ, "PATH": folder}, timeout=60, check=False)
         check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"no disassembler: {r}")
@@ -80,6 +81,17 @@ def room_ends(folder):
                           r.stderr)
         check(len(told) == 1 and 0 < float(told[0]) < 400, f"{option}: {r.stderr}")
         check(0 < file.stat().st_size <= most, f"{option}: {file.stat().st_size} bytes")
+
+
+def no_room_for_fst(folder):
+    """FST, too, of which names, positions and times stand in files of their own at first: a line, not a signal."""
+    for most in (1000, 4096, 6000, 20_000):
+        file = pathlib.Path(folder, "w.fst")
+        r = subprocess.run([command.BRICK, "run", "smoke", "--engine", "systemc", "--wave", str(file)], text=True,
+                           capture_output=True, timeout=60, check=False,
+                           preexec_fn=lambda most=most: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+        check(r.returncode == 1 and "FAIL smoke" in r.stdout, f"{most} bytes: {r}")
+        check(re.search(r"w\.fst: cannot write the waveform: no room for all of it", r.stdout), f"{most} bytes: {r}")
 
 
 globals()[command.CASE]()
