@@ -100,6 +100,7 @@ struct Commands {
         ->type_name("FILE");
     run->callback([this, run] {
       if (run->count("--board") == 0) run_options.board.clear();  // the bench's own
+      run_options.files.writes("--cover", cover);
       chosen = [this] {
         return run_bench(all_benches(), run_options, bench, negative, line_cover(cover, run_options));
       };
@@ -116,14 +117,20 @@ struct Commands {
         "@until @signal @pic @dpram @jumper @input @encoder "
         "@jpan @reset @power "
         "@expect @time.");
-    exec->callback([this] { chosen = [this] { return exec_command(exec_options, script, raw); }; });
+    exec->callback([this] {
+      exec_options.files.reads("", script);
+      chosen = [this] { return exec_command(exec_options, script, raw); };
+    });
 
     auto* console = app.add_subcommand("console", "talks to the started controller: line editing, its control keys");
     add_run_options(*console, console_options, "systemc");
     add_plant_options(*console, console_options);
     console->add_option("--history", history, "keeps the lines typed in FILE")->type_name("FILE");
     console->footer("Lines are those of brick exec, @ lines and #include too. ^] or @quit ends (docs/console.md).");
-    console->callback([this] { chosen = [this] { return console_command(console_options, history); }; });
+    console->callback([this] {
+      console_options.files.writes("--history", history);
+      chosen = [this] { return console_command(console_options, history); };
+    });
 
     auto* serve = app.add_subcommand(
         "serve", "a controller behind the Ethernet port of a Brick, for host software of the real one");
@@ -170,6 +177,7 @@ struct Commands {
         ->type_name("FILE");
     timing->callback([this, timing] {
       if (timing->count("--board") == 0 && !timing_options.sweep) timing_options.run.board.clear();
+      timing_options.run.files.writes("--wavedrom", timing_options.wavedrom);
       chosen = [this] { return timing_command(all_benches(), timing_options); };
     });
 

@@ -146,6 +146,25 @@ std::string engine_name(Engine engine) {
   return engine == Engine::kRtl ? "rtl" : engine == Engine::kSystemC ? "systemc" : "lockstep";
 }
 
+namespace {
+
+void check_files(const RunOptions& o, const MachineConfig& config) {
+  NamedFiles files = o.files;
+  files.reads("--board", board_path(o.board));
+  files.reads("--firmware", config.firmware);
+  if (o.plant != "none") files.reads("--plant", plant_path(o.plant));
+  if (!o.load.empty()) files.reads("--load", setup_path(o.load));
+  if (o.waive) files.reads("--waive", *o.waive);
+  files.writes("--flash", o.flash);
+  files.writes("--wave", o.wave);
+  files.writes("--record", o.record);
+  files.writes("--profile", o.profile);
+  files.writes("--json", o.json);
+  files.check();
+}
+
+}  // namespace
+
 MachineConfig machine_config(const RunOptions& o) {
   MachineConfig config;
   if (o.engine == "rtl")
@@ -184,6 +203,9 @@ MachineConfig machine_config(const RunOptions& o) {
   if (!o.profile.empty()) need_folder("--profile", o.profile);
   wave_window(o);
   trace_groups(o);
+  check_files(o, config);
+  if (!o.json.empty()) need_writable("--json", o.json);
+  if (!o.profile.empty()) need_writable("--profile", o.profile);
   return config;
 }
 

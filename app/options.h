@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "app/named_files.h"
 #include "systemc/core/ticks.h"
 #include "systemc/machine/machine.h"
 
@@ -39,6 +40,7 @@ struct RunOptions {
   std::string size;                  // "" = the bench's own
   std::optional<std::string> bcr;    // hexadecimal; none: as the firmware sets it
   std::optional<std::string> waive;  // file of timing waivers
+  NamedFiles files;                  // that the command names beside these options
 };
 
 // Adds --engine, --board and so on to a command. `engine` is the default.

@@ -333,6 +333,11 @@ int plot_command(const PlotOptions& given) {
   PlotOptions o = given;
   if (o.output.empty()) o.output = fs::path(o.file).replace_extension(".svg");
   need_folder("--output", o.output);
+  NamedFiles files;
+  files.reads("", o.file);
+  files.reads("--beside", o.beside);
+  files.writes("--output", o.output);
+  files.check();
   if (o.title.empty()) o.title = fs::path(o.file).stem();
   const Window window = window_of(o);
   std::vector<Source> sources;

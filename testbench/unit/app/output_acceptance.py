@@ -62,6 +62,7 @@ def results_lost():
             check(made["verdict"] == "FAIL" and name in made["steps"][-1]["detail"], f"{option}: {made['steps'][-1]}")
         room_ends(folder)
         no_room_for_fst(folder)
+        unwritable(folder)
         r = subprocess.run([command.BRICK, "run", "smoke", "--cover", f"{folder}/c"], capture_output=True, text=True,
                            env={**os.environ, "PATH": folder}, timeout=60, check=False)
         check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"no disassembler: {r}")
@@ -92,6 +93,58 @@ def no_room_for_fst(folder):
                            preexec_fn=lambda most=most: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
         check(r.returncode == 1 and "FAIL smoke" in r.stdout, f"{most} bytes: {r}")
         check(re.search(r"w\.fst: cannot write the waveform: no room for all of it", r.stdout), f"{most} bytes: {r}")
+
+
+def unwritable(folder):
+    """Found before the run; what is there stays."""
+    kept = pathlib.Path(folder, "kept.json")
+    kept.write_text("kept")
+    for option in ("--json", "--profile"):
+        r = brick("run", "smoke", "--engine", "systemc", option, "/proc/none.json")
+        check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"{option}: {r}")
+        check(f"{option} /proc/none.json: cannot be written: " in r.stderr, f"{option}: {r}")
+    new = pathlib.Path(folder, "new.json")
+    for file in (kept, new):
+        r = brick("exec", f"{folder}/none.txt", "--json", str(file), "--profile", f"{folder}/new.out")
+        check(r.returncode == 2 and "none.txt" in r.stderr, f"{r}")
+    check(kept.read_text() == "kept" and not new.exists() and not pathlib.Path(folder, "new.out").exists(), "as it was")
+
+
+def same_file():
+    """An output that is another output or an input, by whatever name: bad input, before anything is written."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = pathlib.Path(folder)
+        for name, text in (("s.txt", "I16\n"), ("b.toml", (command.BOARDS / "turbo-pmac-pci.toml").read_text()),
+                           ("old.csv", "old")):
+            (place / name).write_text(text)
+        (place / "link.txt").symlink_to("s.txt")
+        (place / "hard.csv").hardlink_to(place / "old.csv")
+        (place / "sub").mkdir()
+        files = {file: file.read_bytes() for file in place.iterdir() if file.is_file()}
+        bench = ["run", "smoke", "--engine", "systemc"]
+        for arguments, output, other in (
+                ([*bench, "--wave", "a.vcd", "--json", "a.vcd"], "--json a.vcd", "--wave a.vcd"),
+                ([*bench, "--record", "r.csv", "--profile", "sub/../r.csv"], "--profile sub/../r.csv",
+                 "--record r.csv"),
+                ([*bench, "--record", "r.csv", "--cover", f"{folder}/r.csv"], "--record r.csv",
+                 f"--cover {folder}/r.csv"),
+                ([*bench, "--flash", "f", "--json", "f"], "--json f", "--flash f"),
+                ([*bench, "--record", "old.csv", "--json", "hard.csv"], "--json hard.csv", "--record old.csv"),
+                (["exec", "s.txt", "--json", "link.txt"], "--json link.txt", "s.txt"),
+                (["exec", "--board", "b.toml", "--json", "b.toml", "-"], "--json b.toml", "--board b.toml"),
+                (["exec", "--load", "./s.txt", "--json", "s.txt", "-"], "--json s.txt", "--load ./s.txt"),
+                (["console", "--history", "h", "--json", "h"], "--json h", "--history h"),
+                (["serve", "--json", "x", "--profile", "x"], "--json x", "--profile x"),
+                (["timing", "smoke", "--json", "w", "--wavedrom", "w"], "--json w", "--wavedrom w"),
+                (["control", "sock", "--record", "r.csv", "--profile", "r.csv"], "--profile r.csv", "--record r.csv")):
+            r = subprocess.run([command.BRICK, *arguments], input="", text=True, capture_output=True, timeout=60,
+                               cwd=folder, check=False)
+            check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"{arguments}: {r}")
+            check(f": {output}: is {other} too; expected another file" in r.stderr, f"{arguments}: {r.stderr}")
+        found = {file: file.read_bytes() for file in place.iterdir() if file.is_file()}
+        check(found == files, f"{set(found) ^ set(files)}")
+        r = brick("exec", "-", "--json", "/dev/null", "--profile", "/dev/null", script="I16\n")
+        check(r.returncode == 0, f"a device may stand for two: {r}")
 
 
 globals()[command.CASE]()
