@@ -92,6 +92,9 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
   if (!set_up.empty() && !bench.firmware)
     throw UsageError(fmt::format("--load {}: nobody takes it, because no firmware runs in {}; expected no --load",
                                  options.load, bench.name));
+  if (!extras.of_firmware.empty() && !bench.firmware)
+    throw UsageError(fmt::format("{}: no firmware runs in {}; expected no {}", extras.of_firmware, bench.name,
+                                 extras.of_firmware.substr(0, extras.of_firmware.find(' '))));
   const auto motors = motors_of(bench, config.board.fitted);
   Simulation simulation(options, config, bench.name, motors);
   set_up.check(simulation);

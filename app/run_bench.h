@@ -17,6 +17,7 @@ class Simulation;
 // What a command adds to the run.
 struct RunExtras {
   std::string command = "run";                              // for messages
+  std::string of_firmware;                                  // an option that is about the firmware of the run
   std::function<void(Simulation&)> before;                  // the machine is made, nothing has run
   std::function<void(Simulation&, nlohmann::json&)> after;  // the verdict is printed; may add to the results
 };

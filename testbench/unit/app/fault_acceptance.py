@@ -6,6 +6,7 @@ usage: fault_acceptance.py BRICK CASE; each CASE is one test.
 import json
 import pathlib
 import re
+import subprocess
 import tempfile
 
 import command
@@ -111,6 +112,23 @@ def entry_points():
                 r = brick(*arguments, image, script="CID\n")
                 check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"{arguments}: {r}")
                 check(f"{image}: entry point {address:#x} {what}" in r.stderr, f"{r}")
+
+
+def covers_of_odd_images():
+    """--cover without a line that it could be about: bad input, before anything runs."""
+    with tempfile.TemporaryDirectory() as folder:
+        info = pathlib.Path(folder, "c.info")
+        stripped, moved = pathlib.Path(folder, "stripped.elf"), pathlib.Path(folder, "moved.elf")
+        subprocess.run(["riscv64-unknown-elf-strip", "-g", "-o", stripped, faulty_image.image()], check=True)
+        tree = str(command.REPOSITORY).encode()
+        moved.write_bytes(faulty_image.image().read_bytes().replace(tree, b"/" + b"x" * (len(tree) - 1)))
+        sound = faulty_image.image()
+        for bench, image, what in (("smoke", stripped, "stripped.elf has no line table; expected an image with"),
+                                   ("smoke", moved, "crt0.S for example; expected them where they were"),
+                                   ("port-a-phase", sound, "no firmware runs in port-a-phase; expected no")):
+            r = brick("run", bench, "--engine", "systemc", "--firmware", str(image), "--cover", str(info))
+            check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"{image}: {r}")
+            check(f"--cover {info}: " in r.stderr and what in r.stderr and not info.exists(), f"{image}: {r}")
 
 
 globals()[command.CASE]()

@@ -99,7 +99,7 @@ def unwritable(folder):
     """Found before the run; what is there stays."""
     kept = pathlib.Path(folder, "kept.json")
     kept.write_text("kept")
-    for option in ("--json", "--profile"):
+    for option in ("--json", "--profile", "--cover"):
         r = brick("run", "smoke", "--engine", "systemc", option, "/proc/none.json")
         check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1, f"{option}: {r}")
         check(f"{option} /proc/none.json: cannot be written: " in r.stderr, f"{option}: {r}")
