@@ -134,6 +134,7 @@ void Simulation::open_wave(const std::string& file, const WaveWindow& window, co
   } catch (const std::exception& e) { throw UsageError(fmt::format("--wave {}; expected a writable place", e.what())); }
   trace_->on_failure = [this](const std::string& why) { tell(fmt::format("brick: {}; the run goes on", why)); };
   wave_ = file;
+  wave_from_ = window.from;
   machine_->signals().attach(trace_.get(), groups);
 }
 
@@ -146,6 +147,12 @@ void Simulation::close_wave() {
   } catch (const std::exception& e) {
     throw UsageError(fmt::format("--wave {}; expected room for the waveform", e.what()));
   }
+  wave_is_empty_ = machine_->now_fs() < wave_from_;
+  if (wave_is_empty_)
+    tell(
+        fmt::format("brick: --wave {}: is empty, because the run has ended at {:.3f} ms; expected --wave-from before, "
+                    "not {:.3f} ms",
+                    wave_, static_cast<double>(machine_->now_fs()) * 1e-12, static_cast<double>(wave_from_) * 1e-12));
 }
 
 void Simulation::open_record(const std::string& file, const std::string& of) {
@@ -330,7 +337,7 @@ std::string Simulation::measures_text() const {
                                  static_cast<double>(machine_->now()) / wall * 1e-6,
                                  static_cast<double>(machine_->instructions()) / wall * 1e-6);
   if (const std::string moves = aperture_text(); !moves.empty()) text += '\n' + moves;
-  if (!wave_.empty()) text += fmt::format("\nwaveform {}", wave_);
+  if (!wave_.empty()) text += fmt::format("\nwaveform {}{}", wave_, wave_is_empty_ ? ", empty" : "");
   return text;
 }
 

@@ -99,6 +99,8 @@ class Simulation {
   HostLink link_;
   std::unique_ptr<TraceWriter> trace_;
   std::string wave_;
+  TimeFs wave_from_ = 0;
+  bool wave_is_empty_ = false;  // its window begins after the run
   std::chrono::steady_clock::time_point begin_, last_progress_;
   double seconds_ = 0;
   int parent_ = 0;  // 0: whatever it is

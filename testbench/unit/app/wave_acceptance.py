@@ -20,6 +20,13 @@ def wave_window():
             check(pathlib.Path(f"{folder}/new/x.{ending}").stat().st_size > 1000, ending)
         times = [int(t) for t in re.findall(r"^#(\d+)", pathlib.Path(f"{folder}/new/x.vcd").read_text(), re.M)]
         check(times[0] == 10**9 and times[-1] <= 14 * 10**9, f"{times[0]} to {times[-1]} ps")
+        for arguments, said in ((["exec", "-"], ""), (["run", "smoke", "--engine", "systemc"], "x.vcd, empty\n")):
+            late, on_time = (brick(*arguments, "--wave", f"{folder}/x.vcd", "--wave-from", t, script="") for t in
+                             ("10s", "1ms"))
+            check(late.returncode == 0 and late.stderr.count("\n") == 1 and said in late.stdout, f"late: {late}")
+            check(re.search(r"x\.vcd: is empty, because the run has ended at [\d.]+ ms; expected --wave-from before, "
+                            r"not 10000\.000 ms$", late.stderr), f"late: {late}")
+            check(on_time.stderr == "" and ", empty" not in on_time.stdout, f"in time: {on_time}")
 
 
 def names_in(text):
