@@ -18,9 +18,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/build_info.h"
+#include "app/byte_text.h"
 #include "app/options.h"
 #include "app/paths.h"
 #include "app/regress/covers.h"
+#include "app/regress/inputs.h"
 #include "app/regress/picture.h"
 #include "app/regress/plan.h"
 #include "app/regress/pool.h"
@@ -58,9 +60,8 @@ class Regression {
         build_(build_info()),
         terminal_(isatty(STDERR_FILENO) == 1) {
     build_["image"] = file_hash(default_firmware());
-    for (const Run& run : plan_.runs) images_[firmware_of(run)];
-    for (auto& [file, hash] : images_)
-      if (!file.empty()) hash = file_hash(file);
+    build_["executable"] = file_hash("/proc/self/exe");
+    for (const Run& run : plan_.runs) inputs_.of(run);  // before any runs: what changes meanwhile is not what they had
   }
 
   int run() {
@@ -93,10 +94,12 @@ class Regression {
     return run.bench() && at != run.words.end() ? *(at + 1) : "";
   }
 
-  // With the image of this run.
-  nlohmann::json build_of(const Run& run) const {
+  // With the image of this run, and what else it depends on.
+  nlohmann::json build_of(const Run& run) {
     nlohmann::json build = build_;
-    if (const std::string file = firmware_of(run); !file.empty()) build["image"] = images_.at(file);
+    build["files"] = inputs_.of(run);
+    if (const std::string file = firmware_of(run); !file.empty())
+      build["image"] = build["files"].value(utf8_text(file), "");
     return build;
   }
 
@@ -187,7 +190,7 @@ class Regression {
     }
   }
 
-  std::vector<Task> tasks_of(const std::vector<std::size_t>& waiting) const {
+  std::vector<Task> tasks_of(const std::vector<std::size_t>& waiting) {
     std::map<std::string, std::pair<double, double>> seconds;  // sum and count of each kind
     const auto kind = [](const Run& run) { return run.group + "\n" + run.column; };
     for (std::size_t i = 0; i < plan_.runs.size(); ++i)
@@ -338,7 +341,7 @@ class Regression {
   const std::uint64_t fresh_from_;
   std::vector<std::optional<Result>> results_;
   nlohmann::json build_;
-  std::map<std::string, std::string> images_;
+  Inputs inputs_;
   std::vector<Bucket> buckets_;
   std::vector<Replay> replays_;
   const Clock::time_point begin_ = Clock::now();

@@ -209,6 +209,37 @@ def regress_resume():
     check(all(int(name.split("-")[1]) > 30 for name in before), "a usual seed is none that is fresh")
 
 
+def regress_inputs():
+    """A result is of the contents that it was made with: another board, program, image or executable of this name makes
+    the run again, and that run alone."""
+    folder = Folder('[[row]]\nbench = "port-a-phase"\nboard = "b.toml"\n[[row]]\nname = "n"\n'
+                    'command = ["{plan}/n.sh", "--of={plan}/data"]\n[[row]]\nname = "other"\ncommand = ["true"]\n'
+                    '[[row]]\nname = "ours"\ncommand = ["brick", "boards", "{plan}/ours.toml"]\n')
+    tool, board, data, other = (folder.path / name for name in ("n.sh", "b.toml", "data", "ours.toml"))
+    for path in (board, other):
+        shutil.copy(command.BOARDS / "geobrick-lv-8.toml", path)
+    tool.write_text("#!/bin/sh\n")
+    tool.chmod(0o755)
+    data.write_text("1")
+    own = folder.path / "install/bin/brick"
+    own.parent.mkdir(parents=True)
+    (own.parent.parent / "share").symlink_to(pathlib.Path(command.BRICK).parent.parent / "share")
+    for name in ("brick", "turbo.elf"):
+        shutil.copy(pathlib.Path(command.BRICK).with_name(name), own.parent)
+
+    def taken_over():
+        r = subprocess.run([own, "regress", folder.plan, "-o", folder.out, "--resume", "--no-replay"],
+                           capture_output=True, text=True)
+        found = re.search("(\\d+) taken over", r.stdout)
+        return int(found[1]) if found else 0
+
+    check([taken_over(), taken_over()] == [0, 4], "all of what did not change")
+    for path, kept in ((board, 3), (tool, 3), (data, 3), (other, 3), (own, 0), (own.with_name("turbo.elf"), 0)):
+        with open(path, "a") as file:
+            file.write("\n#\n")
+        check([taken_over(), taken_over()] == [kept, 4], f"{path.name} is another one")
+
+
 # Says when it begins and ends; each line is written in one piece. Between, it waits for something, not for ever.
 NOTED = ('command = ["sh", "-c", "echo {{seed}} begins >> {{plan}}/log; for i in $(seq 100); do {until} && break; '
          'sleep 0.1; done; echo {{seed}} ends >> {{plan}}/log"]\n')
