@@ -22,6 +22,7 @@
 #include "app/options.h"
 #include "app/paths.h"
 #include "app/regress/covers.h"
+#include "app/regress/folder_lock.h"
 #include "app/regress/inputs.h"
 #include "app/regress/picture.h"
 #include "app/regress/plan.h"
@@ -358,12 +359,17 @@ std::uint64_t origin_of_seeds(const RegressOptions& options, const std::string& 
   return static_cast<std::uint64_t>(std::time(nullptr));
 }
 
-void prepare(const RegressOptions& options, const std::string& folder, std::uint64_t fresh_from) {
+bool has_runs(const std::string& folder) {
   std::error_code failed;
   const bool used = fs::exists(folder + "/runs", failed), ours = fs::exists(folder + "/fresh_from.txt", failed);
   if (used && !ours)
     throw UsageError(fmt::format("--output {}: has a folder `runs` of somebody else; expected another folder", folder));
-  if (used && !options.resume && !options.rerun_failed) fs::remove_all(folder + "/runs", failed);
+  return used;
+}
+
+void prepare(const RegressOptions& options, const std::string& folder, std::uint64_t fresh_from) {
+  std::error_code failed;
+  if (has_runs(folder) && !options.resume && !options.rerun_failed) fs::remove_all(folder + "/runs", failed);
   fs::create_directories(folder + "/runs", failed);
   std::ofstream note(folder + "/fresh_from.txt");
   note << fresh_from << '\n';
@@ -384,6 +390,8 @@ int regress_command(const std::vector<Bench>& benches, const RegressOptions& opt
     for (const Run& run : plan.runs) std::cout << command_text(run.words) << '\n';
     return 0;
   }
+  has_runs(folder);  // of somebody else: nothing is made there
+  const FolderLock lock(folder);
   Cluster::cancel_left_over(folder);
   prepare(options, folder, fresh_from);
   return Regression(plan, options, folder, fresh_from).run();

@@ -368,6 +368,25 @@ def regress_killed():
         check(r.returncode == 0 and "3 taken over" in r.stdout, f"resumed: {r}")
 
 
+def regress_one_at_a_time():
+    """A folder is of the regression that works there; the next one has it when that has ended, whatever ends it."""
+    mark = f"{2000 + os.getpid()}.5"
+    plan = f'[[row]]\nname = "slow"\ncommand = ["sleep", "{mark}"]\n'
+    folder = Folder(plan)
+    first = subprocess.Popen([command.BRICK, "regress", folder.plan, "-o", folder.out], stdout=subprocess.DEVNULL)
+    wait_for(lambda: sleepers(mark), "the slow one does not run")
+    for options in ([], ["--resume"]):
+        r = folder.regress(*options)
+        check(r.returncode == 2 and "another brick regress works there" in r.stderr and r.stderr.count("\n") == 1,
+              f"{options}: {r}")
+    check(sleepers(mark) and first.poll() is None, "the first one has been disturbed")
+    first.kill()
+    first.wait()
+    folder.write(plan.replace("sleep", "true"))
+    r = folder.regress()
+    check(r.returncode == 0 and folder.report()["counts"]["passed"] == 1, f"after the end of the first: {r}")
+
+
 class Slurm:
     """A cluster of this machine alone: its two daemons with a configuration of their own, as this user."""
 
