@@ -48,7 +48,11 @@ constexpr std::chrono::milliseconds kPatience{200}, kMostPatience{5000};
 constexpr double kUnknownOfTask = 4;  // so many runs whose length nobody knows fill a task
 
 volatile std::sig_atomic_t asked_to_stop = 0;
-void stop(int signal) { asked_to_stop = signal; }
+void stop_when_asked() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (std::signal(signal, [](int which) { asked_to_stop = which; }) == SIG_IGN)  // as of nohup
+      std::signal(signal, SIG_IGN);
+}
 
 class Regression {
  public:
@@ -67,7 +71,7 @@ class Regression {
 
   int run() {
     take_over();
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop);
+    stop_when_asked();
     if (options_.slurm)
       make_on_cluster();
     else

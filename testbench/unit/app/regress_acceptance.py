@@ -368,10 +368,24 @@ def regress_killed():
         check(r.returncode == 0 and "3 taken over" in r.stdout, f"resumed: {r}")
 
 
+def regress_nohup():
+    """A signal that was ignored at the start, as SIGHUP is under nohup, ends nothing."""
+    folder = Folder('[[row]]\nname = "n"\ncommand = ["sh", "-c", "until [ -e {plan}/go ]; do sleep 0.02; done"]\n')
+    ignored = (signal.SIGHUP, signal.SIGINT)
+    r = subprocess.Popen([command.BRICK, "regress", folder.plan, "-o", folder.out], stdout=subprocess.PIPE, text=True,
+                         preexec_fn=lambda: [signal.signal(kind, signal.SIG_IGN) for kind in ignored])
+    wait_for((folder.out / "runs/n.seed-1/output.txt").exists, "nothing runs")
+    for kind in ignored:
+        r.send_signal(kind)
+    (folder.path / "go").touch()
+    said, _ = r.communicate(timeout=60)
+    check(r.returncode == 0 and "PASS plan: 1 runs, 0 failed" in said, f"exit {r.returncode}: {said}")
+
+
 def regress_one_at_a_time():
     """A folder is of the regression that works there; the next one has it when that has ended, whatever ends it."""
     mark = f"{2000 + os.getpid()}.5"
-    plan = f'[[row]]\nname = "slow"\ncommand = ["sleep", "{mark}"]\n'
+    plan = f'[[row]]\nname = "slow"\ncommand = ["sleep", "{mark}"]\nlimit = "20s"\n'
     folder = Folder(plan)
     first = subprocess.Popen([command.BRICK, "regress", folder.plan, "-o", folder.out], stdout=subprocess.DEVNULL)
     wait_for(lambda: sleepers(mark), "the slow one does not run")
