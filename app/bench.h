@@ -41,7 +41,8 @@ class BenchReport {
   BenchReport(std::ostream& out, Machine& machine) : out_(out), machine_(machine) {}
 
   bool step(const std::string& name, bool passed, const std::string& detail);
-  // Passes when nothing differs in `least` comparisons or more; `detail` is for a step that passes. A cover too.
+  // Passes when nothing differs in `least` comparisons or more; `detail` is for a step that passes. A cover too,
+  // unless it may have compared nothing.
   bool step(const std::string& name, const Comparison& compared, unsigned least, const std::string& detail);
   template <class T>
   bool equal(const std::string& name, const T& measured, const T& expected);

@@ -151,8 +151,13 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
   try {
     if (extras.after) extras.after(simulation, results);
   } catch (const std::exception& e) { report.fail("results are written", e.what()); }
+  std::cout << fmt::format("{} {}\n{}\n", report.passed() ? "PASS" : "FAIL", bench.name, simulation.measures_text());
+  if (!std::cout.flush()) {
+    const std::string lost = "stdout took no more; expected room for what the command prints";
+    report.fail("output is written", lost);
+    std::cerr << "brick " << extras.command << ": " << lost << '\n';
+  }
   const bool passed = report.passed();
-  std::cout << fmt::format("{} {}\n{}\n", passed ? "PASS" : "FAIL", bench.name, simulation.measures_text());
   results["bench"] = bench.name;
   results["engine"] = options.engine;
   results["board"] = config.board.name;

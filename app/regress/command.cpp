@@ -12,9 +12,11 @@
 #include <iostream>
 #include <limits>
 #include <map>
+#include <set>
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/build_info.h"
@@ -84,7 +86,7 @@ class Regression {
                         results_,
                         buckets_,
                         replays_,
-                        build_,
+                        build_of_all(),
                         coverage,
                         options_.rank ? coverage.rank() : std::vector<Ranked>{},
                         fresh_from_,
@@ -103,8 +105,22 @@ class Regression {
   nlohmann::json build_of(const Run& run) {
     nlohmann::json build = build_;
     build["files"] = inputs_.of(run);
-    if (const std::string file = firmware_of(run); !file.empty())
-      build["image"] = build["files"].value(utf8_text(file), "");
+    build["image"] = image_of(run, build["files"]);
+    return build;
+  }
+
+  std::string image_of(const Run& run, const nlohmann::json& files) const {
+    const std::string file = firmware_of(run);
+    return file.empty() ? build_.at("image").get<std::string>() : files.value(utf8_text(file), "");
+  }
+
+  // With the images of all benches.
+  nlohmann::json build_of_all() {
+    std::set<std::string> images;
+    for (const Run& run : plan_.runs)
+      if (run.bench()) images.insert(image_of(run, inputs_.of(run)));
+    nlohmann::json build = build_;
+    if (!images.empty()) build["image"] = fmt::format("{}", fmt::join(images, ", "));
     return build;
   }
 
@@ -314,6 +330,7 @@ class Regression {
                              counts.at("failed").get<std::size_t>());
     if (skipped != 0) std::cout << fmt::format(", {} skipped", skipped);
     if (missing != 0) std::cout << fmt::format(", {} not run: --resume makes them", missing);
+    if (skipped == plan_.runs.size()) std::cout << ", none passed";
     if (taken_over_ != 0) std::cout << fmt::format(", {} taken over", taken_over_);
     std::cout << fmt::format("; {:.1f} s\n{}/report.html\n", seconds(), folder_);
     return passed ? 0 : 1;

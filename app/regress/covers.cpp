@@ -34,6 +34,7 @@ std::vector<Ranked> Coverage::rank() const {
     double sum = 0;
     for (const auto& [name, count] : of.counts) {
       const std::uint64_t least = merged_.at(name).least;
+      if (least == 0) continue;  // asks for none
       const auto before = had.find({of.engine, name});
       const std::uint64_t missing = least - (before == had.end() ? 0 : before->second);
       sum += static_cast<double>(std::min(count, missing)) / static_cast<double>(least);

@@ -17,7 +17,7 @@
 namespace brick::regress {
 
 struct MergedCover {
-  std::uint64_t least = 1;                      // of all runs together, on each engine
+  std::uint64_t least = 0;                      // of all runs together, on each engine
   std::map<std::string, std::uint64_t> counts;  // by engine; of a command by its name
   bool reached() const;
 };

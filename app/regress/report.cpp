@@ -39,6 +39,14 @@ std::string headline(const Bucket& bucket) {
   return text;
 }
 
+// Of a run that was stopped, or for which there was no time.
+Result not_run() {
+  Result none;
+  none.verdict = "not run";
+  none.says = "stopped, or no time was left";
+  return none;
+}
+
 // XML has no control characters but the ends of lines, which a command may hold.
 std::string readable_lines(const std::string& text) {
   std::stringstream in(text);
@@ -54,9 +62,7 @@ nlohmann::json report_json(const Report& report) {
   nlohmann::json runs = nlohmann::json::array(), buckets = nlohmann::json::array();
   std::map<std::string, std::size_t> verdicts;
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    Result none;
-    none.verdict = "not run";
-    const Result& result = report.results[i] ? *report.results[i] : none;
+    const Result result = report.results[i].value_or(not_run());
     ++verdicts[result.verdict];
     runs.push_back(result_json(plan.runs[i], result));
   }
@@ -80,7 +86,7 @@ nlohmann::json report_json(const Report& report) {
   }
   const std::size_t missing = verdicts["not run"], passed = verdicts["passed"], skipped = verdicts["skipped"];
   return {{"title", plan.title},
-          {"verdict", passed + skipped == plan.runs.size() ? "passed" : "failed"},
+          {"verdict", passed != 0 && passed + skipped == plan.runs.size() ? "passed" : "failed"},
           {"counts",
            {{"runs", plan.runs.size()},
             {"passed", passed},
@@ -118,13 +124,12 @@ std::string junit_text(const Report& report) {
     test.append_attribute("classname") = readable_text(run.group).c_str();
     test.append_attribute("name") = readable_text(run.name).c_str();
     ++sum.runs;
-    if (!report.results[i] || report.results[i]->skipped()) {
-      test.append_child("skipped").append_attribute("message") =
-          report.results[i] ? readable_text(report.results[i]->says).c_str() : "not run";
+    const Result result = report.results[i].value_or(not_run());
+    if (result.skipped()) {
+      test.append_child("skipped").append_attribute("message") = readable_text(result.says).c_str();
       ++sum.skipped;
       continue;
     }
-    const Result& result = *report.results[i];
     test.append_attribute("time") = fmt::format("{:.3f}", result.wall_seconds).c_str();
     sum.seconds += result.wall_seconds;
     if (result.passed()) continue;

@@ -71,6 +71,7 @@ Result steps_of(const nlohmann::json& run) {
     for (const auto& step : run.value("steps", nlohmann::json::array())) {
       if (step.value("passed", false)) continue;
       result.step = shortened(step.value("name", ""));
+      if (result.step.empty()) result.step = "a step without a name";
       result.says = shortened(step.value("detail", ""));
       result.at_ms = step.value("ns", 0.0) * 1e-6;
       break;
@@ -144,7 +145,7 @@ Result judge(const Run& run, const Ended& ended, const std::string& folder) {
       break;
   }
   if (ended.code == 0) {
-    result.verdict = "passed";
+    result.verdict = result.step.empty() ? "passed" : "failed";  // whatever it ended with
     return result;
   }
   if (ended.code == kSkipped && !run.bench()) {

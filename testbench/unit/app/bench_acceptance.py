@@ -27,6 +27,8 @@ def bench_passes(name, engine, seed="1", firmware=True, board=None, size=None):
     check(f"PASS {name}" in r.stdout and "ticks/s" in r.stdout and "instructions/s" in r.stdout, r.stdout)
     check(len(results["steps"]) > 5 and results["ticks"] > 0 and (results["instructions"] > 0) == firmware,
           str(results))
+    idle = [cover for cover, counted in results["covers"].items() if counted["least"] == 0]
+    check(not idle, f"covers that ask for nothing: {idle}")
     return results
 
 

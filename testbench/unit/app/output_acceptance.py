@@ -27,15 +27,18 @@ def ended(arguments, script="", **streams):
 
 
 def output_lost():
-    """A reader that goes, a full disk, a closed stream: status 1 and a line that says so, and results as ever."""
+    """A reader that goes, a full disk, a closed stream: status 1 and a line that says so, in the results too."""
     with tempfile.TemporaryDirectory() as folder, open("/dev/full", "w", encoding="ascii") as full:
         results = pathlib.Path(folder, "r.json")
-        for arguments in (["list", "--json"], ["boards"], ["run", "smoke", "--engine", "systemc"]):
+        smoke = ["run", "smoke", "--engine", "systemc", "--json", str(results)]
+        lost = "stdout took no more; expected room for what the command prints"
+        for who, arguments in (("brick", ["list", "--json"]), ("brick", ["boards"]), ("brick run", smoke)):
             status, said = ended(arguments, stdout=full)
-            check(status == 1 and said == "brick: stdout took no more; expected room for what the command prints\n",
-                  f"{arguments}: {status} {said}")
-        status, _ = ended(["run", "smoke", "--engine", "systemc", "--json", str(results)], stdout=None)
-        check(status == 1 and json.loads(results.read_text())["verdict"] == "PASS", f"stdout closed: {status}")
+            check(status == 1 and said == f"{who}: {lost}\n", f"{arguments}: {status} {said}")
+        for stream, status in (("full", 1), ("closed", ended(smoke, stdout=None)[0])):
+            made = json.loads(results.read_text())
+            failed = [step["detail"] for step in made["steps"] if not step["passed"]]
+            check(status == 1 and made["verdict"] == "FAIL" and failed == [lost], f"stdout {stream}: {status}, {failed}")
         check(ended(["exec", "none"], stderr=None)[0] == 2, "stderr closed")
         results.unlink()
         with subprocess.Popen([command.BRICK, "exec", "-", "--json", str(results)], text=True, stdin=subprocess.PIPE,

@@ -201,6 +201,8 @@ def regress_resume():
     check(runs() == 10, "without --resume")
     r = folder.regress("--minutes", "0")
     check(r.returncode == 1 and runs() == 10 and "2 not run: --resume makes them" in r.stdout, f"no time: {r}")
+    suite = xml.parse(folder.out / "report.xml").getroot()[0]
+    check([suite.get(k) for k in ("failures", "errors", "skipped")] == ["0", "2", "0"], "JUnit: not run")
     fresh = Folder('[[row]]\nname = "n"\ncommand = ["true", "{seed}"]\nfresh = 40\n')
     fresh.regress()
     before = set(fresh.verdicts())
@@ -322,6 +324,10 @@ def regress_skips():
     folder.write(folder.plan.read_text().replace("[0, 77]", "[1, 77]"))
     r = folder.regress("--resume")
     check(r.returncode == 1 and "1 taken over" in r.stdout, f"a failure beside it: {r}")
+    folder.write(folder.plan.read_text().replace("[1, 77]", "77"))
+    r = folder.regress("--resume")
+    check(r.returncode == 1 and "FAIL plan: 1 runs, 0 failed, 1 skipped, none passed" in r.stdout, f"nothing else: {r}")
+    check(folder.report()["verdict"] == "failed", "a plan of which nothing was tested has passed")
 
 
 def sleepers(mark):

@@ -1,5 +1,6 @@
 """brick regress: what runs leave that is no result, and runs that have the names of others.
 usage: regress_odd.py BRICK CASE"""
+import json
 import pathlib
 import shutil
 import xml.etree.ElementTree as xml
@@ -13,7 +14,7 @@ def regress_foreign():
     """A run.json or words of somebody else, of any form, are no steps and no covers; every run has its verdict."""
     files = ('{"steps": 5}', '{"steps": [5]}', '{"steps": [{"name": 3}]}', '{"simulated_ns": "long"}', "[1]", "{",
              '{"covers": {"a": 3}}', '{"covers": [1]}', '{"covers": {"a": {"count": "x"}}}', '{"covers": 5}',
-             '{"covers": {"b": {"count": 1, "least": 0}}}')
+             '{"covers": {"b": {"count": 0, "least": 0}}}')
     folder = Folder('[[row]]\nname = "own"\n'
                     'command = ["sh", "-c", "cp {plan}/$(({seed} / 2)).json run.json; exit $(({seed} % 2))"]\n'
                     f'seeds = "0-{2 * len(files) - 1}"\n'
@@ -25,10 +26,26 @@ def regress_foreign():
     wanted = {f"own.seed-{n}": "failed" if n % 2 else "passed" for n in range(2 * len(files))}
     check(r.returncode == 1 and folder.verdicts() == {**wanted, "words.seed-1": "failed"}, f"{r}")
     covers = {c["name"]: (c["counts"], c["least"]) for c in folder.report()["covers"]}
-    check(covers == {"b": ({"own": 1}, 1)}, f"covers: {covers}")
-    check(folder.report()["ranked"][0]["adds"] == 1.0, "a least of nothing asks for one")
+    check(covers == {"b": ({"own": 0}, 0)}, f"covers: {covers}")
+    check(folder.report()["ranked"] == [] and "1 of 1 covers" in r.stdout, "a least of nothing asks for one")
     # 300 bytes: 9 of `FAIL <F9>`, which is a number here, and 145 times two; the next would be cut
     check(bucket(folder.report(), "words")[0]["says"] == "FAIL <#>" + 145 * "é" + "...", "cut between characters")
+
+
+def regress_foreign_steps():
+    """A step that failed is a failure, also of a command that ends with 0; its covers do not count."""
+    steps = ('{"name": "a", "passed": true}, {"name": "b", "passed": false, "detail": "3"}', '{"name": "a"}', "{}",
+             '{"name": "a", "passed": true}')
+    folder = Folder('[[row]]\nname = "n"\ncommand = ["cp", "{plan}/{seed}.json", "run.json"]\n'
+                    f'seeds = "0-{len(steps) - 1}"\n')
+    for number, text in enumerate(steps):
+        (folder.path / f"{number}.json").write_text(f'{{"steps": [{text}], "covers": {{"c": {{"count": 1}}}}}}')
+    r = folder.regress()
+    report = folder.report()
+    found = [(x["verdict"], x["step"]) for x in report["runs"]]
+    check(r.returncode == 1 and found == [("failed", "b"), ("failed", "a"), ("failed", "a step without a name"),
+                                          ("passed", "")], f"{found}, {r}")
+    check(report["covers"][0]["counts"] == {"n": 1}, f"{report['covers']}")
 
 
 def regress_odd_files():
@@ -56,6 +73,10 @@ def regress_same_names():
     r = folder.regress("--no-replay")
     report = folder.report()
     check([x["verdict"] for x in report["runs"]] == ["passed", "bad"] * 2, f"{r}: {report['runs']}")
+    images = [json.loads((folder.out / "runs" / x["name"] / "result.json").read_text())["build"]["image"]
+              for x in report["runs"]]
+    check(len(set(images)) == 2 and report["build"]["image"] == ", ".join(sorted(set(images))),
+          f"images of the runs: {images}, of all: {report['build']['image']}")
     check([b["verdict"] for b in report["buckets"]] == ["bad"], f"{report['buckets']}")
     check("4 taken over" in folder.regress("--resume", "--no-replay").stdout, "--resume has forgotten some")
 
