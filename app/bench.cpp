@@ -57,6 +57,11 @@ std::vector<long> BenchContext::numbers(const std::string& line) const {
   return values;
 }
 
+unsigned BenchContext::clock_variable(unsigned k) const {
+  constexpr unsigned kDirection = 7;  // which I19 names
+  return default_clock_source(board.fitted, board.macro_gate) - kDirection + k;
+}
+
 std::string BenchContext::problems() const {
   constexpr std::pair<unsigned, const char*> kBits[] = {
       {10, "flash error"}, {7, "configuration error"}, {3, "no phase clock"}};  // of the first word
@@ -80,12 +85,16 @@ int count(std::uint32_t ics) { return __builtin_popcount(ics); }
 
 }  // namespace
 
+std::uint32_t clock_ics(const BoardConfig& board) { return board.fitted & ~(board.macro_gate << kMaxServoIcs); }
+
 const BenchNeed kAnyBoard{};
 const BenchNeed kAServoIc{"a servo IC", [](const BoardConfig& b) { return (b.fitted & kServoIcMask) != 0; }};
 const BenchNeed kServoIc0{"servo IC 0", [](const BoardConfig& b) { return (b.fitted & 1) != 0; }};
 const BenchNeed kServoIcs01{"servo ICs 0 and 1", [](const BoardConfig& b) { return (b.fitted & 3) == 3; }};
-const BenchNeed kTwoIcs{"two servo or MACRO ICs", [](const BoardConfig& b) { return count(b.fitted) >= 2; }};
-const BenchNeed kAMacroIc{"a MACRO IC", [](const BoardConfig& b) { return (b.fitted & ~kServoIcMask) != 0; }};
+const BenchNeed kTwoIcs{"two ICs that can make the clocks",
+                        [](const BoardConfig& b) { return count(clock_ics(b)) >= 2; }};
+const BenchNeed kAMacroIc{"a MACRO IC that is no MACROGATE",
+                          [](const BoardConfig& b) { return (clock_ics(b) & ~kServoIcMask) != 0; }};
 const BenchNeed kASlotOf16Bits{"a slot of 16 bits", [](const BoardConfig& b) { return !b.slot8; }};
 const BenchNeed kSerialInputs{"serial encoder inputs", [](const BoardConfig& b) {
                                 return b.ssi_kind == kSsiGeoPmac || b.ssi_kind == kSsiGeoBrick;

@@ -80,7 +80,8 @@ struct BenchContext {
   std::string ask(const std::string& line) const;            // data lines joined by '|'
   std::vector<long> numbers(const std::string& line) const;  // data lines as numbers
   Tick next_fall(const PinField& pin, Tick limit) const;     // its tick, -1 after `limit` at either level
-  std::string problems() const;                              // what ??? reports of flash and clocks: "none", or by name
+  unsigned clock_variable(unsigned k) const;  // number of I7m0k, I68n0k of the IC that makes the clocks at the factory
+  std::string problems() const;               // what ??? reports of flash and clocks: "none", or by name
   void expect(const std::string& line, const std::string& answer) const { report.equal(line, ask(line), answer); }
 };
 
@@ -90,7 +91,8 @@ struct BenchNeed {
   std::function<bool(const BoardConfig&)> met = [](const BoardConfig&) { return true; };
 };
 extern const BenchNeed kAnyBoard, kAServoIc, kServoIc0, kServoIcs01, kTwoIcs, kAMacroIc, kASlotOf16Bits, kSerialInputs;
-BenchNeed without_8259(const BenchNeed& need);  // and the interrupt controller of the Turbo boards
+std::uint32_t clock_ics(const BoardConfig& board);  // those that can make the clocks, bits as BoardConfig::fitted
+BenchNeed without_8259(const BenchNeed& need);      // and the interrupt controller of the Turbo boards
 
 // What `brick run --negative` does, and the proof that the bench sees it: the first step that fails.
 struct NegativeControl {

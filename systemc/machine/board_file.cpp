@@ -51,7 +51,7 @@ class Reader {
     if (board.dpram_words != 8192 && board.dpram_words != 32768)
       file_.fail(file_.need("dpram_words"), "dpram_words", "8192 or 32768");
     read_options(board);
-    if (file_.has("interrupts")) board.line_select = interrupts(board.fitted);
+    board.line_select = file_.has("interrupts") ? interrupts(board.fitted) : default_interrupts(board);
     if (file_.has("pic")) board.pic_8259 = is_8259(board.bus);
     if (file_.has("notes")) board.notes = file_.texts("notes");
     return board;
@@ -140,6 +140,19 @@ class Reader {
     return value;
   }
 
+  static unsigned servo_ic_of_equ(std::uint32_t code) { return (code - 1) / 4; }
+  static bool is_missing(std::uint32_t code, std::uint32_t fitted) {
+    return code != 0 && code <= kSourceEqu8 && (fitted >> servo_ic_of_equ(code) & 1) == 0;
+  }
+
+  // `none` for the compare outputs that are not fitted.
+  static std::uint32_t default_interrupts(const BoardConfig& board) {
+    std::uint32_t select = board.line_select;
+    for (std::size_t line = 0; line < kInterruptLines; ++line)
+      if (is_missing(select >> 4 * line & 0xF, board.fitted)) select &= ~(0xFu << 4 * line);
+    return select;
+  }
+
   // Sources of IR5, IR6 and IR7 as digits of BoardInputs::line_select.
   std::uint32_t interrupts(std::uint32_t fitted) const {
     const toml::array& list = file_.array("interrupts");
@@ -151,9 +164,9 @@ class Reader {
       if (source == kInterruptSources.end())
         file_.fail(list[line], "interrupts", fmt::format("{}", fmt::join(kInterruptSources, ", ")));
       const auto code = static_cast<std::uint32_t>(source - kInterruptSources.begin());
-      if (code != 0 && code <= kSourceEqu8 && (fitted >> ((code - 1) / 4) & 1) == 0)
+      if (is_missing(code, fitted))
         file_.fail(list[line], "interrupts",
-                   fmt::format("a compare output that is there: servo IC {} is not fitted", (code - 1) / 4));
+                   fmt::format("a compare output that is there: servo IC {} is not fitted", servo_ic_of_equ(code)));
       if (code >= kSourceMi1 && !family_->outside_lines)
         file_.fail(list[line], "interrupts",
                    fmt::format("a compare output, WDO or none: a {} has no MI or AXEXP lines", family_->name));

@@ -97,7 +97,8 @@ class BreqSelect {
     std::shuffle(states.begin() + 1, states.begin() + 8, random_);  // each group of the panel has some of each
     std::shuffle(states.begin() + 8, states.end(), random_);
     b_.ask("DELETE GATHER");
-    b_.ask("I68=15 I16=1 I17=2 I8=0 I7002=0 I6802=0");
+    b_.ask("I68=15 I16=1 I17=2");
+    rates(0, 0);
     b_.ask("I8008=0");  // 32 entries of the conversion table alone take longer than T_CS (host-bus:5.7/9)
     for (unsigned cs = kSystems; cs-- > 0;)
       if (states[cs] != Buffer::kIdle) b_.ask(fmt::format("&{}DEFINE ROTARY 20", cs + 1));
@@ -121,6 +122,11 @@ class BreqSelect {
     b_.report.step("sixteen coordinate systems", count(Buffer::kReady) == 5 && count(Buffer::kFull) == 5,
                    fmt::format("{} idle, {} with room, {} full", count(Buffer::kIdle), count(Buffer::kReady),
                                count(Buffer::kFull)));
+  }
+
+  // The servo divider is that of the IC that makes the clocks.
+  void rates(unsigned i8, unsigned servo_divider) {
+    b_.ask(fmt::format("I8={} I{}={}", i8, b_.clock_variable(2), servo_divider));
   }
 
   void real_time(Tick period) {
@@ -224,7 +230,7 @@ class BreqSelect {
     const unsigned ready = some(Buffer::kReady), full = some(Buffer::kFull);
     std::string long_line = "P1=SIN(1)";
     for (unsigned i = 0; i < 12; ++i) long_line += "+SIN(1)";
-    b_.ask("I8=0 I7002=1 I6802=1");
+    rates(0, 1);
     real_time(2 * kPhase);
     address(full);
     for (const char* line : {"&1DELETE ROTARY", "DEFINE ROTARY 3000", "I5187=0 I5188=0 I5189=1000000", "INC B0"})
@@ -265,7 +271,7 @@ class BreqSelect {
     b_.bus.wait(2 * real_time_);
     b_.expect("DELETE ROTARY", "");
     b_.expect("DEFINE ROTARY 20", "");
-    b_.ask("I8=0 I7002=0 I6802=0");
+    rates(0, 0);
     real_time(kPhase);
     back_to(full);
   }
@@ -333,7 +339,7 @@ class BreqSelect {
   }
 
   void default_rate() {
-    b_.ask("I8=2 I7002=3 I6802=3");
+    rates(2, 3);
     real_time(3 * 4 * kPhase);
     b_.bus.wait(real_time_);
     if (b_.board.jpan) i2(0);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "systemc/machine/board_family.h"
 #include "testbench/benches/benches.h"
 #include "testbench/benches/channel_host.h"
 
@@ -284,8 +285,11 @@ class CaptureCompareBench {
     }
     for (unsigned line = 5; line < 8; ++line) {
       const unsigned code = b_.board.line_select >> 4 * (line - 5) & 0xF;
-      if (code == 0 || code > n) continue;
-      const unsigned i = code - 1;
+      if (code == 0 || code > kSourceEqu8) continue;
+      const auto& ics = host_.fitted();  // EQU1 to EQU4 are of servo IC 0, EQU5 to EQU8 of servo IC 1
+      const auto place = std::find(ics.begin(), ics.end(), (code - 1) / kChannels);
+      if (place == ics.end()) continue;
+      const unsigned i = kChannels * static_cast<unsigned>(place - ics.begin()) + (code - 1) % kChannels;
       ChannelScoreboard& board = host_.board(i);
       const long at = board.decoder.counter(), passed = at + 3;
       host_.ask(fmt::format("M{}=0 M{}={} M{}={} M{}=0 M{}=1", kIncrement + 100 * i, kCompareA + 100 * i, passed,

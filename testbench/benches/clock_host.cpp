@@ -9,7 +9,7 @@ constexpr Tick kAnswer = ns_to_ticks(1'000'000);  // a line sent and acknowledge
 }
 
 ClockHost::ClockHost(BenchContext& bench) : bench_(bench) {
-  source_ = (bench.board.fitted & 1) != 0 ? 0 : kFirstMacroIc;
+  while (direction_variable(source_) != bench.clock_variable(7)) ++source_;
   bench.bus.watch(select_pins(pin::kPhase, pin::kServo, pin::kSourceConflict), [this](Tick t, const BoardOutputs&,
                                                                                       const BoardOutputs& o) {
     checker_.pins(t, o.get(pin::kPhase) != 0, o.get(pin::kServo) != 0, o.get(pin::kSourceConflict) != 0);

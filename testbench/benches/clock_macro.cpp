@@ -43,8 +43,8 @@ class MacroBench {
 
   void run() {
     for (unsigned ic = kFirstMacroIc; ic < kClockIcs; ++ic)
-      if ((b_.board.fitted >> ic & 1) != 0) macros_.push_back(ic);
-    b_.report.step("MACRO ICs fitted", !macros_.empty(), std::to_string(macros_.size()));
+      if ((clock_ics(b_.board) >> ic & 1) != 0) macros_.push_back(ic);
+    b_.report.step("MACRO ICs that can make the clocks", !macros_.empty(), std::to_string(macros_.size()));
     if (macros_.empty()) return;
     // Servo clocks of up to 29 kHz leave no time for a conversion table of all channels, nor for motors.
     host_.expect("I8000=0 I100=0", "");

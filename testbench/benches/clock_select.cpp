@@ -24,8 +24,10 @@ constexpr Tick kSync = kNetDelay + kPinDelay;  // a follower acts so much later 
 class SelectBench {
  public:
   explicit SelectBench(BenchContext& b) : b_(b), random_(b.seed * 104'729), host_(b) {
-    for (unsigned ic = 0; ic < kClockIcs; ++ic)
+    for (unsigned ic = 0; ic < kClockIcs; ++ic) {
       if ((b.board.fitted >> ic & 1) != 0) fitted_.push_back(ic);
+      if ((clock_ics(b.board) >> ic & 1) != 0) sources_.push_back(ic);
+    }
   }
 
   void sources() {
@@ -67,9 +69,9 @@ class SelectBench {
     }
   }
 
-  // `count` ICs that are not the source, in any order.
+  // `count` ICs that could be the source and are not, in any order.
   std::vector<unsigned> some(std::size_t count) {
-    std::vector<unsigned> order = fitted_;
+    std::vector<unsigned> order = sources_;
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[pick(static_cast<unsigned>(i))]);
     order.erase(std::remove(order.begin(), order.end(), host_.source()), order.end());
     order.resize(std::min(order.size(), count));
@@ -83,7 +85,10 @@ class SelectBench {
   }
 
   // Every direction variable: 0 on the source, `inputs` on the others (1 on a MACROGATE), 0 where there is no IC.
-  void directions(const std::string& name, unsigned inputs, std::uint32_t gates = 0, std::uint32_t present = ~0u) {
+  void directions(const std::string& name, unsigned inputs) {
+    directions(name, inputs, b_.board.macro_gate, b_.board.fitted);
+  }
+  void directions(const std::string& name, unsigned inputs, std::uint32_t gates, std::uint32_t present) {
     Comparison same;
     for (const unsigned ic : fitted_) {
       const bool gate = ic >= kFirstMacroIc && (gates >> (ic - kFirstMacroIc) & 1) != 0;
@@ -108,7 +113,7 @@ class SelectBench {
   // I19-2: live, by one line as the manual demands, in both orders of writing.
   void by_one_line() {
     bool new_first = (b_.seed & 1) != 0;
-    const auto order = some(fitted_.size() / 2);
+    const auto order = some(sources_.size() / 2);
     for (const unsigned ic : order) {
       const std::string line = both(ic, host_.source(), new_first);
       new_first = !new_first;
@@ -129,7 +134,7 @@ class SelectBench {
     host_.program(host_.source(), same);
     b_.bus.wait(16 * same.phase());  // outside the window only each fourth edge moves a turnaround
     Comparison behind;
-    for (const unsigned ic : some(1 + fitted_.size() / 4)) {
+    for (const unsigned ic : some(1 + sources_.size() / 4)) {
       b_.bus.wait(6 * same.phase() + pick(static_cast<unsigned>(same.phase())));
       const Tick before = host_.checker().last_phase_fall();
       host_.move(ic, both(ic, host_.source(), pick(2) != 0));
@@ -168,7 +173,7 @@ class SelectBench {
 
   // servo-ic:7.2: the lowest-numbered IC wins, and the run has an error to show.
   void two_sources() {
-    const unsigned lowest = fitted_[0], other = fitted_[1 + pick(static_cast<unsigned>(fitted_.size()) - 1)];
+    const unsigned lowest = sources_[0], other = sources_[1 + pick(static_cast<unsigned>(sources_.size()) - 1)];
     if (host_.source() != lowest) host_.move(lowest, both(lowest, host_.source(), true));
     host_.verdict("source is the lowest-numbered IC");
     host_.checker().allow_conflict(true);
@@ -243,12 +248,10 @@ class SelectBench {
     const std::uint32_t all = b_.board.fitted;
     const bool gate = (all & kNeeded) == kNeeded;
     const std::uint32_t present = gate ? all & ~1u : all;
-    const unsigned first = gate                              ? kServoIc1
-                           : (all & 1) != 0                  ? 0
-                           : (all >> kFirstMacroIc & 1) != 0 ? kFirstMacroIc
-                                                             : fitted_[0];
+    const bool macro_ic_0 = (clock_ics(b_.board) >> kFirstMacroIc & 1) != 0;
+    const unsigned first = gate ? kServoIc1 : (all & 1) != 0 ? 0 : macro_ic_0 ? kFirstMacroIc : sources_[0];
     b_.machine.inputs().fitted = present;
-    b_.machine.inputs().macro_gate = gate ? 1 : b_.board.macro_gate;
+    b_.machine.inputs().macro_gate = b_.board.macro_gate | (gate ? 1u : 0u);
     b_.machine.apply();
     b_.machine.set_jumper_e3(true);
     if (!restart()) return;
@@ -305,7 +308,7 @@ class SelectBench {
   BenchContext& b_;
   std::mt19937_64 random_;
   ClockHost host_;
-  std::vector<unsigned> fitted_;
+  std::vector<unsigned> fitted_, sources_;
   unsigned saved_ = 0;  // IC that the SAVEd I19 names
 };
 

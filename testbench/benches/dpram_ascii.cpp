@@ -14,7 +14,8 @@ namespace brick {
 namespace {
 
 constexpr Tick kMillisecond = ns_to_ticks(1'000'000);
-constexpr unsigned kCompareLine = 5;  // EQU1, or CTRL0 on an Ultralite
+constexpr unsigned kFirstChosen = 5, kLineEnd = 8;  // of the interrupt controller, BoardConfig::line_select
+constexpr unsigned kEqu1 = 1;                       // which the firmware pulses
 
 class AsciiBench {
  public:
@@ -38,7 +39,7 @@ class AsciiBench {
   void errors();
   void control_characters();
   void texts();
-  void interrupt();
+  void interrupt(unsigned line);
   void unread();
 
   BenchContext& b_;
@@ -147,11 +148,11 @@ void AsciiBench::texts() {
 }
 
 // Rises of the line, counted where the interrupt controller shows it.
-void AsciiBench::interrupt() {
+void AsciiBench::interrupt(unsigned line) {
   b_.expect("I56=1", "");
   b_.bus.write_pic_edge_level(0);
   b_.bus.clear_pic();
-  b_.bus.write_pic_mask(1U << kCompareLine);
+  b_.bus.write_pic_mask(1U << line);
   const unsigned lines = 3 + pick(5);
   if (!port_.send(fmt::format("P1..{}", lines))) b_.report.fail("line to the RAM", "not taken");
   unsigned interrupts = 0, taken = 0;
@@ -164,7 +165,7 @@ void AsciiBench::interrupt() {
   b_.report.equal("interrupts, one a line", interrupts, lines + 1);
   b_.report.equal("lines that were there at each", taken, lines + 1);
   b_.bus.wait(5 * kMillisecond);
-  b_.report.equal("line after the last release", b_.bus.read_pic_signals() >> kCompareLine & 1, 0);
+  b_.report.equal("line after the last release", b_.bus.read_pic_signals() >> line & 1, 0);
   b_.bus.write_pic_mask(0);
   b_.expect("I56=0", "");
 }
@@ -200,7 +201,8 @@ void AsciiBench::run() {
   errors();
   control_characters();
   texts();
-  if ((b_.board.fitted & 1) != 0 && !b_.board.pic_8259) interrupt();
+  for (unsigned line = kFirstChosen; line < kLineEnd && !b_.board.pic_8259; ++line)
+    if ((b_.board.line_select >> 4 * (line - kFirstChosen) & 0xF) == kEqu1) interrupt(line);
   unread();
 }
 

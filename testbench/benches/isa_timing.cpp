@@ -267,8 +267,10 @@ class IsaTimingBench {
     Comparison same;
     // A slot of eight bits has 1 MiB.
     const std::uint32_t size = b_.board.window_flat ? 0x10000 : 0x4000, end = b_.board.slot8 ? 1u << 20 : 1u << 24;
-    unsigned addresses = 8;
-    for (unsigned bit = 4; bit < 12; ++bit) same.word("I/O", bus().read_io((bus().io_base() + 2) ^ 1u << bit), 0xFF);
+    const unsigned decoded = b_.board.io_decode16 ? 12 : 10;  // bits of an I/O address that a card looks at
+    unsigned addresses = decoded - 4;
+    for (unsigned bit = 4; bit < decoded; ++bit)
+      same.word("I/O", bus().read_io((bus().io_base() + 2) ^ 1u << bit), 0xFF);
     for (std::uint32_t bit = size; bit < end; bit <<= 1, ++addresses)
       same.word("memory", bus().read_memory(bus().window() ^ bit, 3), 0xFFFF);
     b_.report.step("addresses that are nobody's", same, addresses, fmt::format("{} read as ones", same.made()));

@@ -136,7 +136,8 @@ Serial::Serial(BenchContext& b) : host_(b), inverted_(host_.channels()), command
 }
 
 void Serial::configure(const std::array<Setting, 2>& settings, unsigned phase_divider, unsigned servo_divider) {
-  std::vector<std::string> words{fmt::format("I7001={}", phase_divider), fmt::format("I7002={}", servo_divider)};
+  std::vector<std::string> words{fmt::format("I{}={}", host_.bench().clock_variable(1), phase_divider),
+                                 fmt::format("I{}={}", host_.bench().clock_variable(2), servo_divider)};
   for (unsigned i = 0; i < host_.places(); ++i) {
     const Setting& s = settings[i];
     words.push_back(fmt::format("I{}={}", host_.i_global(i, 3), 2 + 8 * 2 + 64 * s.dac + 512 * s.adc));

@@ -8,9 +8,6 @@
 namespace brick {
 namespace {
 
-// I19 at the factory: servo IC 0 where there is one, else MACRO IC 0.
-unsigned clock_variable(const BenchContext& b) { return (b.board.fitted & 1) ? 7007 : 6807; }
-
 // Default clocks (servo-ic:3.1, servo-ic:3.2): MaxPhase is 2 x 6527 + 3 = 13057 ticks, I7001 = 0, servo = 4 phases.
 void clocks(BenchContext& b) {
   constexpr Tick kPhase = 2 * 6527 + 3, kServo = 4 * kPhase, kLimit = 4 * kServo;
@@ -27,7 +24,7 @@ void clocks(BenchContext& b) {
   const auto source = b.machine.signals().find("clock.source");
   if (source)
     b.report.equal<std::int64_t>("clock.source", static_cast<std::int64_t>(b.machine.signals().value(*source)),
-                                 clock_variable(b));
+                                 b.clock_variable(7));
   else
     b.report.fail("clock.source", "no such signal");
 }
@@ -111,10 +108,10 @@ void characters(BenchContext& b) {
 }
 
 void run(BenchContext& b) {
-  if (b.negative) b.link.command("I7002=2 I6802=2");
+  if (b.negative) b.link.command(fmt::format("I{}=2", b.clock_variable(2)));
   b.expect("VERSION", "1.947");
   b.expect("CID", std::to_string(b.board.card));
-  b.expect("I19", std::to_string(clock_variable(b)));
+  b.expect("I19", std::to_string(b.clock_variable(7)));
   clocks(b);
   interrupt_controller(b);
   dual_ported_ram(b);

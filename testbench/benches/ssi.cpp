@@ -386,7 +386,7 @@ void SsiBench::table() {
 void SsiBench::refused() {
   silence();
   on_phase_ = false, falling_ = true;
-  host_.say({"I7002=0"});
+  host_.say({fmt::format("I{}=0", host_.bench().clock_variable(2))});
   for (unsigned g = 0; g < (geo_ ? 1u : 2u); ++g)
     if (!geo_) host_.say({fmt::format("M{}=${:X}", 140 + g, 0xC72302)});  // 800 cycles a bit
   encoders_.begin();

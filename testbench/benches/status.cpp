@@ -3,6 +3,7 @@
 // characters say the same. And each error number that a host can provoke, where firmware:6.4 says.
 #include <fmt/format.h>
 
+#include "systemc/machine/board_family.h"
 #include "testbench/benches/benches.h"
 
 namespace brick {
@@ -248,8 +249,7 @@ void control_characters(BenchContext& b) {
     const Reply reply = b.link.control(c);
     return reply.lines.empty() ? "nothing" : reply.lines.front();
   };
-  const bool ultralite = b.board.fitted >> 18 != 0 && (b.board.fitted & 0x3FFFF) == 0,
-             umac = b.board.family == "umac-turbo";
+  const bool ultralite = (b.board.product & kProductUltralite) != 0, umac = (b.board.product & kProductUmac) != 0;
   const std::uint64_t global = bit(1, 11) | (ultralite ? bit(1, 23) : 0) | (umac ? bit(1, 16) : 0);
   compared.equal("^B", line(0x02), statuses);
   compared.equal("^C", line(0x03), systems);

@@ -89,6 +89,43 @@ def every_board():
                                negative_says="vector: 16, expected 8")
 
 
+# A board of one's own and the benches that are about what is odd there.
+OWN_BOARDS = {
+    "one axis card": ('family = "umac-turbo"\nbus = "pc104"\nservo_ics = [2]',
+                      "capture-compare serial-dac-adc breq-select"),
+    "a card of the second base": ('family = "umac-turbo"\nbus = "pc104"\nservo_ics = ["5*"]\naxes = 1', ""),
+    "no axis card": ('family = "umac-turbo"\nbus = "pc104"\nservo_ics = []\nmacro_ics = [1]', "status breq-select"),
+    "the second servo IC": ('family = "geo-brick-lv"\nbus = "internal"\nservo_ics = [1]\nmacro_ics = [0]',
+                            "capture-compare ssi"),
+    "one MACRO IC": ('family = "turbo-pmac2-ultralite"\nbus = "pci"\nservo_ics = []\nmacro_ics = [2]',
+                     "clock-macro breq-select"),
+    "two MACROGATEs": ('family = "turbo-pmac2-ultralite"\nbus = "pci"\nservo_ics = []\nmacro_ics = [0, 1, 2, 3]\n'
+                       'macro_gates = [1, 2]', "clock-select clock-faults clock-macro"),
+    "10 address bits": ('family = "turbo-pmac2"\nbus = "isa"\nservo_ics = [0]\nio_base = 0x3F0\nio_decode = 10\n'
+                        'interrupts = ["EQU4", "none", "EQU1"]', "isa-timing dpram-ascii capture-compare")}
+
+
+# covers: CARD-1 CARD-2
+def own_boards():
+    """Benches take their expectations from the board: on any that a file can say they pass, or lack something."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "own.toml")
+        for title, (lines, benches) in OWN_BOARDS.items():
+            file.write_text(f'title = "{title}"\ncard = 603382\ndpram_words = 8192\n{lines}\n')
+            for bench in ["smoke", *benches.split()]:
+                r = brick("run", bench, "--engine", "systemc", "--board", str(file))
+                failed = [line for line in r.stdout.splitlines() if "FAIL" in line]
+                check(r.returncode == 0, f"{title}, {bench}: exit {r.returncode}: {failed}{r.stderr}")
+            fails_its_negative_control("smoke", board=str(file))
+        gates = 'macro_ics = [1, 2]\nmacro_gates = [1]'
+        lacking = {"clock-macro": "servo_ics = [2]", "clock-select": f"servo_ics = []\n{gates}"}
+        for bench, ics in lacking.items():
+            file.write_text('title = "few"\nfamily = "umac-turbo"\nbus = "pc104"\ncard = 603382\n'
+                            f'dpram_words = 8192\n{ics}\n')
+            r = brick("run", bench, "--engine", "systemc", "--board", str(file))
+            check(r.returncode == 2 and "which board own has not" in r.stderr, f"{ics}, {bench}: {r}")
+
+
 def smoke():
     for engine in ("systemc", "rtl", "lockstep"):
         bench_passes("smoke", engine)

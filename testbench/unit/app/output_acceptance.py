@@ -37,8 +37,8 @@ def output_lost():
             check(status == 1 and said == f"{who}: {lost}\n", f"{arguments}: {status} {said}")
         for stream, status in (("full", 1), ("closed", ended(smoke, stdout=None)[0])):
             made = json.loads(results.read_text())
-            failed = [step["detail"] for step in made["steps"] if not step["passed"]]
-            check(status == 1 and made["verdict"] == "FAIL" and failed == [lost], f"stdout {stream}: {status}, {failed}")
+            said = [step["detail"] for step in made["steps"] if not step["passed"]]
+            check(status == 1 and made["verdict"] == "FAIL" and said == [lost], f"stdout {stream}: {status}, {said}")
         check(ended(["exec", "none"], stderr=None)[0] == 2, "stderr closed")
         results.unlink()
         with subprocess.Popen([command.BRICK, "exec", "-", "--json", str(results)], text=True, stdin=subprocess.PIPE,

@@ -377,11 +377,10 @@ def regress_killed():
 def regress_nohup():
     """A signal that was ignored at the start, as SIGHUP is under nohup, ends nothing."""
     folder = Folder('[[row]]\nname = "n"\ncommand = ["sh", "-c", "until [ -e {plan}/go ]; do sleep 0.02; done"]\n')
-    ignored = (signal.SIGHUP, signal.SIGINT)
-    r = subprocess.Popen([command.BRICK, "regress", folder.plan, "-o", folder.out], stdout=subprocess.PIPE, text=True,
-                         preexec_fn=lambda: [signal.signal(kind, signal.SIG_IGN) for kind in ignored])
+    r = subprocess.Popen(["sh", "-c", "trap '' HUP INT; exec \"$@\"", "sh", command.BRICK, "regress", folder.plan, "-o",
+                          folder.out], stdout=subprocess.PIPE, text=True)
     wait_for((folder.out / "runs/n.seed-1/output.txt").exists, "nothing runs")
-    for kind in ignored:
+    for kind in (signal.SIGHUP, signal.SIGINT):
         r.send_signal(kind)
     (folder.path / "go").touch()
     said, _ = r.communicate(timeout=60)

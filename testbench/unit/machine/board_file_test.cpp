@@ -80,6 +80,18 @@ TEST(BoardFile, TurboPmacHasTheControlPanelAndTheSmallDualPortedRam) {
   EXPECT_FALSE(board.notes.empty()) << "its DSPGATEs are not modelled";
 }
 
+// What the key says when it is left out are outputs that are there.
+TEST(BoardFile, DefaultInterruptsAreOfServoIcsThatAreFitted) {
+  const std::pair<const char*, std::uint32_t> kBoards[] = {{"servo_ics = [0, 1]", 0x951},
+                                                           {"servo_ics = [0]", 0x901},
+                                                           {"servo_ics = [1]", 0x950},
+                                                           {"servo_ics = [2]", 0x900}};
+  for (const auto& [ics, select] : kBoards) {
+    const TemporaryFile file(with("servo_ics", ics));
+    EXPECT_EQ(read_board_file(file.path()).line_select, select) << ics;
+  }
+}
+
 // host-bus:4.2, the lines that jumpers do not choose; codes as BoardInputs::line_select.
 TEST(BoardFile, InterruptLinesAreThoseOfTheProduct) {
   constexpr unsigned kEqu1 = 1, kEqu2 = 2, kEqu3 = 3, kEqu5 = 5, kWdo = 9, kCtrl0 = 10, kCtrl1 = 11;
