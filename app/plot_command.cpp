@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +16,7 @@
 #include <fstream>
 #include <iostream>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -70,15 +72,23 @@ Window window_of(const PlotOptions& o) {
   return window;
 }
 
+// Decimal and finite: gnuplot leaves other values out, or takes them for others.
+std::optional<double> number_of(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool good = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  return good ? std::optional(value) : std::nullopt;
+}
+
 // The first of the numbers of a row, nothing where it has others than `count` of them.
 std::optional<double> time_of(const std::string& row, std::size_t count) {
-  const char* at = row.c_str();
   double time = 0;
+  std::size_t at = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    char* end = nullptr;
-    const double value = std::strtod(at, &end);
-    if (end == at || *end != (i + 1 < count ? ',' : '\0')) return std::nullopt;
-    if (i == 0) time = value;
+    const std::size_t comma = row.find(',', at), end = std::min(comma, row.size());
+    const std::optional<double> value = number_of(std::string_view(row).substr(at, end - at));
+    if (!value || (comma == std::string::npos) != (i + 1 == count)) return std::nullopt;
+    if (i == 0) time = *value;
     at = end + 1;
   }
   return time;
@@ -186,15 +196,12 @@ std::vector<Limit> limits_of(const std::vector<std::string>& texts) {
   std::vector<Limit> limits;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
-    std::size_t used = 0;
-    double value = 0;
-    try {
-      if (equals != std::string::npos) value = std::stod(text.substr(equals + 1), &used);
-    } catch (const std::exception&) {}
-    if (equals == std::string::npos || equals == 0 || used == 0 || equals + 1 + used != text.size() ||
-        !std::isfinite(value))
+    const std::optional<double> value = equals == std::string::npos || equals == 0
+                                            ? std::nullopt
+                                            : number_of(std::string_view(text).substr(equals + 1));
+    if (!value)
       throw UsageError(fmt::format("--limit {}: is no limit; expected one like velocity=32", beginning_of(text)));
-    limits.push_back({text.substr(0, equals), value});
+    limits.push_back({text.substr(0, equals), *value});
   }
   return limits;
 }

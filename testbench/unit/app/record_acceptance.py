@@ -5,6 +5,7 @@ usage: record_acceptance.py BRICK CASE; each CASE is one test.
 
 import csv
 import pathlib
+import re
 import resource
 import subprocess
 import tempfile
@@ -148,7 +149,9 @@ def odd_pictures(folder, file):
     check(not (place / "WHO").exists(), "a name was run as a command")
     old = (place / "a.svg").read_bytes()
     for lines, text in ((rows[:9] + [rows[9][:-9]], "r.csv:10: "), ([*rows[:9], "1,x\n"], "r.csv:10: `1,x`"),
-                        ([*rows[:9], rows[9].replace("\n", ",0\n")], "r.csv:10: ")):
+                        ([*rows[:9], rows[9].replace("\n", ",0\n")], "r.csv:10: "),
+                        *(([*rows[:9], re.sub(r"[^,]*\n", f"{odd}\n", rows[9])], "r.csv:10: ")
+                          for odd in ("nan", "inf", "0x10", "1e400"))):
         r = plotted("r.csv", "a.svg", lines)
         check(r.returncode == 2 and text in r.stderr and "as in its first line" in r.stderr, f"{text}: {r}")
     r = plotted("r.csv", "a.svg", restore_signals=False,  # SIGXFSZ stays ignored: the file takes no more
@@ -186,6 +189,7 @@ def plot():
                                 ((str(file), "--from", "10s"), "has 0 rows to draw"),
                                 ((str(file), "--from", "20ms", "--to", "10ms"), "expected the earlier time first"),
                                 ((str(file), "--limit", "velocity=nan"), "is no limit"),
+                                ((str(file), "--limit", "velocity=0x10"), "is no limit"),
                                 ((str(file), "--title", "a\n!touch b"), "has an end of a line"),
                                 ((str(file), "--of", "motor3.error"), "no column `motor3.error`"),
                                 ((str(file), "--limit", "speed=3"), "nothing of that kind is drawn"),
