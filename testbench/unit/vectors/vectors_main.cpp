@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 
 #include "systemc/core/usage_error.h"
 #include "testbench/unit/vectors/wave.h"
@@ -39,6 +40,11 @@ int run(const std::string& path, const std::string& engine, bool draw) {
 int run_negatives(const std::string& path, const std::string& engine) {
   const brick::Vector vector = read(path, engine);
   int status = 0;
+  const brick::RunResult right = brick::run_vector(vector, *brick::make_device(vector.device, engine, vector.board));
+  if (!right.passed()) {  // of each fault too, which would say nothing
+    fmt::print(stderr, "{}: fails without a fault; expected a vector that passes\n{}", path, right.text());
+    return 1;
+  }
   for (const brick::Corruption& corruption : vector.negatives) {
     const auto device = brick::make_device(vector.device, engine, vector.board);
     const brick::RunResult result = brick::run_vector(vector, *device, &corruption);
@@ -46,6 +52,13 @@ int run_negatives(const std::string& path, const std::string& engine) {
     fmt::print("{}\n    {}\n", corruption.name, result.failures.empty() ? "NOT FOUND" : result.failures.front());
   }
   return status;
+}
+
+// A figure that got lost has not been drawn.
+int with_output_written(int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  fmt::print(stderr, "stdout took no more; expected room for what is printed\n");
+  return 1;
 }
 
 }  // namespace
@@ -62,7 +75,7 @@ int main(int argc, char** argv) {
   app.add_option("FILE", path)->required();
   try {
     app.parse(argc, argv);
-    return negative ? run_negatives(path, engine) : run(path, engine, draw);
+    return with_output_written(negative ? run_negatives(path, engine) : run(path, engine, draw));
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const brick::UsageError& error) {
