@@ -32,6 +32,7 @@ const std::vector<std::string> kBenchKeys{"bench", "engine",   "board",    "seed
 const std::vector<std::string> kCommandKeys{"name", "command", "seeds", "fresh", "repeat", "limit", "alone"};
 
 constexpr std::size_t kMostRuns = 1'000'000;
+constexpr std::size_t kLongestName = 200;     // of a run: a folder's name has 255 letters, and a hash may come behind
 constexpr std::int64_t kMostSeeds = 100'000;  // of a row
 constexpr std::uint64_t kLargestFreshSeed = 1'000'000'000;
 constexpr std::uint64_t kLargestUsualSeed = 30;  // those of the test suite and of people: none of them is fresh
@@ -145,6 +146,7 @@ class Reader {
 
  private:
   void add(Run run) {
+    if (run.name.size() > kLongestName) run.name = run.name.substr(0, kLongestName) + "." + text_hash(run.name);
     const auto other = [&](const auto& at) { return at != names_.end() && plan_.runs[at->second].words != run.words; };
     auto at = names_.find(run.name);
     for (; other(at); at = names_.find(run.name)) run.name += "." + text_hash(command_text(run.words));

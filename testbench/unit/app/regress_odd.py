@@ -59,6 +59,18 @@ def regress_odd_files():
     check([c.get("classname") for c in cases] == [f"<07>{i}" for i in range(len(commands))], "names in XML")
 
 
+def regress_long_names():
+    """A name longer than that of a folder may be costs nothing; two that begin alike are two."""
+    long = 280 * "n"
+    folder = Folder("".join(f'[[row]]\nname = "{long}{end}"\ncommand = ["true"]\nrepeat = 2\n' for end in "ab"))
+    r = folder.regress()
+    runs = folder.report()["runs"]
+    check(r.returncode == 0 and [x["verdict"] for x in runs] == ["passed"] * 4, f"{r}")
+    check([x["group"] for x in runs] == [long + end for end in "aabb"], "the whole name stands in the report")
+    check(len({x["name"] for x in runs}) == 4 and all(len(x["name"]) < 256 for x in runs), f"{runs}")
+    check("4 taken over" in folder.regress("--resume").stdout, "--resume has forgotten some")
+
+
 def regress_same_names():
     """Images and boards of one file name in two folders are runs of their own, which --resume knows again; that one of
     the images is none is no difference between engines."""
