@@ -181,7 +181,7 @@ TEST(BoardFile, SerialEncoderInputsAreThoseOfTheFamily) {
 }
 
 TEST(BoardFile, AmplifiersOfABrickAndOfAGeoPmacHoldFaultLow) {
-  for (const auto& entry : std::filesystem::directory_iterator("boards")) {
+  for (const auto& entry : std::filesystem::directory_iterator(BRICK_SOURCE_DIR "/boards")) {
     const std::string name = entry.path().stem();
     const bool low = name.rfind("geo", 0) == 0;
     EXPECT_EQ(idle_channel_pins(read_board_file(tree(name))), low ? 0xF82 & ~8 : 0xF82 | 8) << name;
