@@ -143,8 +143,6 @@ void lookahead_close(uint32_t cs) {
     if ((left & 1u) != 0) system_motor_stands_aside(motor, scales[motor].held);
 }
 
-bool lookahead_may_hold(uint32_t cs) { return looks[cs].guarded != 0; }
-
 /* (fastest / way)^2 */
 static int32_t cap_of(int32_t fastest, int32_t way) {
   const int64_t part = fixed_ratio(fastest, way) >> (62 - RATE_BITS);

@@ -37,8 +37,7 @@ bool lookahead_is_full(uint32_t cs);
 uint32_t lookahead_left(uint32_t cs); /* segments that are not handed over */
 /* The next control point, the last ones of the motors by number; move and line at it. */
 void lookahead_add(uint32_t cs, const int64_t control[][SPLINE_POINTS], uint32_t number, const struct path_line* line);
-void lookahead_close(uint32_t cs);    /* the points so far are all */
-bool lookahead_may_hold(uint32_t cs); /* motors at the limits of their desired positions */
+void lookahead_close(uint32_t cs); /* the points so far are all */
 /* Of a segment: its control points, each of all motors in their order. */
 void lookahead_points(uint32_t cs, uint32_t segment, const struct lookahead_motor* points[SPLINE_POINTS]);
 

@@ -15,7 +15,8 @@
 bool segment_work(uint32_t cs, bool alone);
 bool segment_is_busy(uint32_t cs); /* moves wait, or a sequence has not been made to its end */
 bool segment_is_under_way(uint32_t cs);
-/* A move of another kind may be calculated. False: the sequence comes to its end for it, and needs its place still. */
+/* A move of another kind may be calculated. False: the sequence comes to its end for it. Until that is made a stop may
+ * leave moves out, and nothing may be calculated that begins where they end. */
 bool segment_gives_way(uint32_t cs);
 void segment_stop(uint32_t cs); /* the sequence ends with the move that is under way; later ones wait for R, S */
 bool segment_is_left(uint32_t cs);

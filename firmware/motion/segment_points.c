@@ -147,11 +147,8 @@ static void join(uint32_t cs) {
 
 /* No move can join any more. */
 static bool is_last(uint32_t cs) {
-  const struct coordinate_system* s = &coordinate_systems[cs];
   const struct sequence* q = &sequences[cs];
-  if (q->closed || q->stops || q->joined < paths[cs].count) return true;
-  const struct move* next = cs_next_move(s);
-  return q->handed && next != 0 && next->kind != MOVE_SEGMENTS;
+  return q->closed || q->stops || q->joined < paths[cs].count;
 }
 
 enum decision { GOES_ON, ENDS, WAITS };

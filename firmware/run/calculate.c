@@ -230,6 +230,13 @@ static void begin(uint32_t cs) {
   segment_begin_at(cs, position);
 }
 
+/* A stop waits for the rest of a line that has begun, unless that waits for moves which the stop has left out. */
+static bool may_stop(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  if (!s->quit && !s->end_block) return false;
+  return !motion_programs[cs].under_way || (segment_is_left(cs) && !segment_is_busy(cs));
+}
+
 /* False: there is nothing to do for it at this interrupt. */
 static bool turn(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
@@ -250,7 +257,7 @@ static bool turn(uint32_t cs) {
   }
   if (runs_on(cs)) return true;
   if (move_place(cs) || segment_work(cs, false)) return true;
-  if ((s->quit || s->end_block) && !motion_programs[cs].under_way) {
+  if (may_stop(cs)) {
     if (segment_is_busy(cs)) return segment_work(cs, true);
     if (s->active || (s->next_valid && !s->end_block)) return false; /* what is calculated is still to be executed */
     s->running = s->quit = s->stepping = false; /* end_block keeps a calculated move from starting until R */

@@ -1,0 +1,116 @@
+// A move of one mode behind moves of another (motion:5.4, motion:5.6, motion:7.1): where stops leave the motors, what
+// is there in time, and that no motor ever leaps.
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/segment.h"
+}
+
+namespace {
+
+using namespace moving_motors;
+
+class ChangingModes : public MovingMotors {
+ protected:
+  // 30 counts a ms is the most that motors go for themselves.
+  static void begin(const std::string& settings) {
+    platform::power_up();
+    fit({"1000X", "1000Y"});
+    for (const char* i : {"I1", "I2"}) {
+      const std::string n = i;
+      ASSERT_EQ(host(n + "15=1 " + n + "19=1 " + n + "20=20 " + n + "21=0 " + n + "22=30 " + n + "92=1"), "");
+    }
+    ASSERT_EQ(host("I5195=200000 I5194=200000 DELETE GATHER"), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 200,30"), "");
+    ASSERT_EQ(host(settings), "");
+  }
+  // Over `ms`: no motor goes faster than `fastest` counts a ms, the first one never back.
+  void go(double ms, double fastest) {
+    for (unsigned n = ticks_of(ms); n > 0; --n) {
+      const double before[] = {at(1), at(2)};
+      platform::servo_ticks(1);
+      for (unsigned i = 0; i < 2; ++i) {
+        const double step = at(i + 1) - before[i];
+        ASSERT_LE(std::abs(step), fastest * kTickMs * 1.001 + 0.01) << "#" << i + 1 << " from " << before[i];
+        if (i == 0) { ASSERT_GE(step, -0.01) << "from " << before[i]; }
+      }
+    }
+  }
+  static bool stands() { return !run_is_running(0) && !cs().active && piece_ring_is_empty(&cs().ring); }
+};
+
+// motion:7.1/8: three lines of 100 ms that blend, with changes of velocity of 20 ms. Segments of 10 ms are made 80 ms
+// ahead at most, so at 20 ms the last one lies in X1 and at 250 ms in X3. A move of another kind is behind all of them.
+TEST_F(ChangingModes, AStopLeavesOutWhatIsBehindTheMoveThatEnds) {
+  const struct {
+    Lines lines;
+    double ends;
+  } lasts[] = {{{"SPLINE1 TM100 X3.5", "RAPID X4"}, 4000}, {{"SPLINE2 TM100 X3.5", "X4"}, 4000},
+               {{"PVT100 X3.5:0", "RAPID X4"}, 4000},      {{"RAPID X3.5", "X4"}, 4000},
+               {{"CIRCLE1 X3.5 R1", "RAPID X4"}, 4000},    {{"I5113=0", "LINEAR X3.5", "X4"}, 4000},
+               {{"DWELL100", "LINEAR X4"}, 4000},          {{"PSET X3", "RAPID X4"}, 4000}};
+  const struct {
+    double at, least, most;
+  } stops[] = {{20, 1000, 1000}, {80, 1000, 2000}, {130, 2000, 3000}, {250, 3000, 3000}};
+  for (const auto& last : lasts)
+    for (const char* order : {"&1Q", "&1/", "&1S"})
+      for (const char* ahead : {"I5120=0", "I5120=2"})
+        for (const auto& stop : stops) {
+          SCOPED_TRACE(last.lines.front() + " " + order + " " + ahead + " at " + std::to_string(stop.at));
+          begin(std::string("I5113=10 ") + ahead);
+          Lines lines = {"LINEAR ABS TM100 TA20 TS0", "X1", "X2", "X3"};
+          lines.insert(lines.end(), last.lines.begin(), last.lines.end());
+          store(lines);
+          ASSERT_EQ(host("&1B1R"), "");
+          go(stop.at, 30);
+          ASSERT_EQ(host(order), "");
+          go(500, 30);
+          ASSERT_TRUE(stands());
+          ASSERT_GE(at(1), stop.least);
+          if (ahead[6] == '0') { ASSERT_LE(at(1), stop.most); }
+          const bool blends = last.lines.front() == "CIRCLE1 X3.5 R1" && at(1) == 3500;
+          ASSERT_TRUE(at(1) == 1000 || at(1) == 2000 || at(1) == 3000 || blends) << at(1);
+          ASSERT_EQ(host("&1R"), "");
+          go(1000, 30);
+          ASSERT_TRUE(stands());
+          EXPECT_EQ(motors[0].trajectory, std::llround(last.ends * kUnit));
+          EXPECT_EQ(cs().error, RUN_TIME_NONE);
+        }
+}
+
+// A line that becomes one of another mode behind its axes has begun: what is before it is left out all the same.
+TEST_F(ChangingModes, AStopLeavesOutWhatABegunLineWaitsFor) {
+  begin("I5113=10 I5120=0");
+  store({"LINEAR ABS TM100 TA20 TS0", "X1", "X2", "X3.5 SPLINE1 TM100", "X4"});
+  ASSERT_EQ(host("&1B1R"), "");
+  go(20, 30);
+  ASSERT_EQ(host("&1Q"), "");
+  go(500, 30);
+  ASSERT_TRUE(stands());
+  EXPECT_EQ(motors[0].trajectory, 1000 * 3072);
+  ASSERT_EQ(host("&1R"), "");
+  go(1000, 30);
+  ASSERT_TRUE(stands());
+  EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
+}
+
+// A search for home too.
+TEST_F(ChangingModes, AStopLeavesOutASearchForHome) {
+  for (const char* order : {"&1Q", "&1/", "&1S"}) {
+    begin("I5113=10 I5120=0 I223=10 I225=$78000");
+    store({"LINEAR ABS TM100 TA20 TS0", "X1", "X2", "HOME2", "RAPID X4"});
+    ASSERT_EQ(host("&1B1R"), "");
+    go(20, 30);
+    ASSERT_EQ(host(order), "");
+    go(500, 30);
+    ASSERT_TRUE(stands());
+    EXPECT_EQ(motors[0].trajectory, 1000 * 3072) << order;
+    EXPECT_EQ(motors[1].trajectory, 0) << order;
+    ASSERT_EQ(host("&1R"), "");
+    go(500, 30);
+    EXPECT_EQ(motors[0].trajectory, 2000 * 3072) << order;
+    EXPECT_GT(motors[1].trajectory, 1000 * 3072) << order << ": it looks for it still";
+  }
+}
+
+}  // namespace
