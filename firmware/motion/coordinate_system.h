@@ -81,7 +81,7 @@ struct move {
   int64_t knot_time[KNOTS - 1];
   int64_t time_ahead; /* SPLINE: of point n - 2 */
   struct knot knots[KNOTS];
-  bool overruns;             /* it ends in motion: without a next one it runs on, to be stopped */
+  bool overruns;             /* motors end in motion: without a next one it runs on, to be stopped */
   bool waited;               /* its line was waited for: who is late then is the host */
   uint32_t own;              /* OWN: the motors */
   bool homes;                /* they search for home */

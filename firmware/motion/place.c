@@ -3,6 +3,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/corner.h"
+#include "firmware/motion/path.h"
 #include "firmware/motion/place_motors.h"
 #include "firmware/motion/plan_cubic.h"
 #include "firmware/motion/plan_own.h"
@@ -133,6 +134,26 @@ bool move_place(uint32_t cs) {
   s->first = false;
   cs_busy |= 1u << cs;
   return true;
+}
+
+/* Behind the executing move there is one that begins from rest, in the place of the next one or among the segments. */
+static bool comes_to_rest(uint32_t cs) {
+  const struct move* next = cs_next_move(&coordinate_systems[cs]);
+  return paths[cs].count != 0 || (next != 0 && !(next->joins && next->kind == MOVE_PVT));
+}
+
+bool move_ends(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = hal_mask_servo();
+  struct move* m = &s->moves[s->executing];
+  const bool overruns = m->kind == MOVE_PVT && m->overruns && !s->placed;
+  const bool in_time = overruns && (int32_t)(m->straight - s->ring.executing) >= 0;
+  if (in_time && comes_to_rest(cs)) {
+    piece_ring_take_back(&s->ring, m->straight + 1u);
+    m->overruns = false;
+  }
+  hal_unmask(state);
+  return in_time || !overruns;
 }
 
 void move_take_back(uint32_t cs) {

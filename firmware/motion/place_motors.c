@@ -211,14 +211,10 @@ static bool blend(struct move* next, uint32_t number) {
   return false;
 }
 
-/* Behind the last piece; behind a PVT move that ends in motion, which something else follows, in place of what would
- * have been its stop. */
+/* Behind the last piece. */
 static void append(struct coordinate_system* s) {
-  const struct move* m = &s->moves[s->executing];
   const uint32_t state = hal_mask_servo();
-  const bool cuts = s->active && m->kind == MOVE_PVT && m->overruns;
-  if (!cuts || !piece_ring_replace(&s->ring, m->straight, m->time, making.added))
-    for (uint32_t i = 0; i < making.added; i++) piece_ring_add(&s->ring);
+  for (uint32_t i = 0; i < making.added; i++) piece_ring_add(&s->ring);
   s->placed = true;
   hal_unmask(state);
 }

@@ -48,11 +48,11 @@ void plan_pvt(uint32_t cs) {
     m->knots[1].position[axis] = m->knots[2].position[axis] = target[axis];
     m->knots[1].velocity[axis] = m->knots[2].velocity[axis] = velocity;
     if (velocity == 0.0) continue;
-    m->overruns = true;
+    m->overruns = s->motors != 0;
     m->knots[2].position[axis] += velocity * OVERRUN_MS;
     slice_pause();
   }
-  m->knot_count = m->overruns && s->motors != 0 ? 3 : 2;
+  m->knot_count = m->overruns ? 3 : 2;
   plan_finish(cs, m, true, target);
 }
 

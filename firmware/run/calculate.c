@@ -172,7 +172,7 @@ static bool settle(uint32_t cs) {
   const uint32_t state = hal_mask_servo();
   piece_ring_clear(&s->ring);
   segment_forget(cs);
-  s->active = s->next_valid = s->placed = false;
+  s->active = s->next_valid = s->placed = s->moves[s->executing].overruns = false;
   s->planned = s->started;
   s->settling = false;
   hal_unmask(state);
@@ -192,12 +192,9 @@ static void fail(uint32_t cs, enum run_time_error cause) {
 /* A PVT move that ends in motion runs on. Behind the last one of a program that is no error, it ends so. */
 static bool runs_on(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  const struct move* m = &s->moves[s->executing];
-  const uint32_t state = hal_mask_servo();
-  const bool over = s->active && m->kind == MOVE_PVT && m->overruns && !s->placed && s->elapsed > m->time;
-  hal_unmask(state);
-  if (s->motors == 0 || !over) return false;
-  fail(cs, s->quit && !s->next_valid ? RUN_TIME_NONE : RUN_TIME_LATE);
+  if (move_ends(cs)) return false;
+  const bool ends = s->quit && !s->next_valid && !segment_is_left(cs);
+  fail(cs, ends ? RUN_TIME_NONE : RUN_TIME_LATE);
   return true;
 }
 

@@ -1,10 +1,7 @@
 // A move of one mode behind moves of another (motion:5.4, motion:5.6, motion:7.1): where stops leave the motors, what
 // is there in time, and that no motor ever leaps.
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/moving_motors.h"
-
-extern "C" {
-#include "firmware/motion/segment.h"
-}
 
 namespace {
 
@@ -111,6 +108,86 @@ TEST_F(ChangingModes, AStopLeavesOutASearchForHome) {
     EXPECT_EQ(motors[0].trajectory, 2000 * 3072) << order;
     EXPECT_GT(motors[1].trajectory, 1000 * 3072) << order << ": it looks for it still";
   }
+}
+
+// motion:5.4/3: 1000 counts in 150 ms from rest to 5 counts a ms, 9 at most. What comes behind it in time, whatever it
+// is, begins at its end and from rest.
+TEST_F(ChangingModes, WhatIsBehindPvtInMotionBeginsAtItsEnd) {
+  const struct {
+    Lines lines;
+    double x, y, stands;  // ends; ms that motor 1 stays at the end of the PVT move
+  } nexts[] = {{{"LINEAR TM100 Y1", "X3"}, 3000, 1000, 80},
+               {{"LINEAR TM100 INC X2"}, 3000, 0, 0},
+               {{"LINEAR DELAY100", "X3"}, 3000, 0, 90},
+               {{"CIRCLE1 TM100 X3 R2"}, 3000, 0, 0},
+               {{"RAPID X3"}, 3000, 0, 0},
+               {{"HOME2", "RAPID X3"}, 1000, 0, 300},
+               {{"DWELL100", "X3"}, 3000, 0, 100},
+               {{"SPLINE1 TM100 X3"}, 3000, 0, 0},
+               {{"DWELL0 PVT100 X3:0"}, 3000, 0, 0}};
+  for (const auto& next : nexts)
+    for (const char* settings : {"I5113=0", "I5113=5", "I5113=5 I5120=40", "I5113=5 I5181=300 I5182=10"}) {
+      SCOPED_TRACE(next.lines.front() + " " + settings);
+      begin(std::string(settings) + " I223=10 I225=$78000 I128=8000000 I228=8000000");
+      Lines lines = {"TA20 TS0 PVT150 X1:5"};
+      lines.insert(lines.end(), next.lines.begin(), next.lines.end());
+      store(lines);
+      ASSERT_EQ(host("&1B1R"), "");
+      for (int i = 0; i < 200 && !cs().active; ++i) platform::servo_ticks(1);
+      go(150 - kTickMs, 9);
+      ASSERT_NEAR(at(1), 1000, 2 * kTickMs * 5.1);
+      go(2 * kTickMs, 9);
+      ASSERT_NEAR(at(1), 1000, 0.1) << "a LINEAR move has begun at most";
+      const std::int64_t stands = motors[0].trajectory;
+      go(next.stands, 30);
+      EXPECT_TRUE(next.stands == 0 || motors[0].trajectory == stands);
+      go(700, 30);
+      EXPECT_EQ(motors[0].trajectory, std::llround(next.x * kUnit));
+      if (next.lines.front() != "HOME2") { EXPECT_EQ(motors[1].trajectory, std::llround(next.y * kUnit)); }
+      EXPECT_EQ(cs().error, RUN_TIME_NONE);
+    }
+}
+
+// The PVT move comes to its end while the next one is calculated and placed: that begins at its end, or it is late, and
+// the motor runs on, by 5 counts a ms and then a ramp of 12.5 counts.
+TEST_F(ChangingModes, APlaceBehindPvtInMotionIsInTimeOrLate) {
+  unsigned in_time = 0, late = 0;
+  for (const char* settings : {"I5113=0", "I5113=5"})
+    for (const char* next : {"LINEAR TM100 X3 Y1", "RAPID X3 Y1", "DWELL10 X3 Y1", "SPLINE1 TM100 X3 Y1"})
+      for (const unsigned pauses : {1u, 3u, 10u, 40u})
+        for (unsigned left = 0; left < 12; ++left) {
+          SCOPED_TRACE(std::string(next) + " " + settings + ", " + std::to_string(left) + " interrupts before, " +
+                       std::to_string(pauses) + " pauses an interrupt");
+          begin(settings);
+          store({"TA20 TS0 PVT150 X1:5", next});
+          ASSERT_EQ(host("&1B1R"), "");
+          for (int i = 0; i < 200 && !cs().active; ++i) platform::servo_ticks(1);
+          ASSERT_FALSE(cs().next_valid);
+          double last = at(1);
+          const auto servo = [&] {
+            fake_task_run_servo();
+            ASSERT_LE(std::abs(at(1) - last), 30 * kTickMs + 0.01) << "from " << last;
+            last = at(1);
+          };
+          for (unsigned i = ticks_of(150); i > left; --i) servo();
+          unsigned count = 0;
+          platform::real_time_in_slices([&] {
+            if (++count % pauses == 0 && count < 60 * pauses) servo();
+          });
+          go(700, 30);
+          ASSERT_TRUE(stands());
+          const bool is_late = cs().error == RUN_TIME_LATE;
+          (is_late ? late : in_time)++;
+          if (is_late) {
+            ASSERT_LT(at(1), 1000 + 12.5 + 5 * 100 * kTickMs);
+            ASSERT_GT(at(1), 1000 + 12.5);
+          } else {
+            ASSERT_EQ(cs().error, RUN_TIME_NONE);
+            ASSERT_EQ(motors[0].trajectory, 3000 * 3072);
+          }
+        }
+  EXPECT_GT(in_time, 50u);
+  EXPECT_GT(late, 50u);
 }
 
 }  // namespace
