@@ -10,8 +10,6 @@
 
 struct feedrate plan_feedrate(uint32_t cs, double fastest) {
   struct feedrate f = {.feed = cs_real(cs, ISX89_FEEDRATE), .axes = coordinate_systems[cs].feedrate_axes};
-  const double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT);
-  if (limit > 0.0 && f.feed > limit) f.feed = limit;
   if (fastest > 0.0 && f.feed > fastest) f.feed = fastest;
   f.unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT);
   if (i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME)) != 0) f.alternate = cs_real(cs, ISX86_ALTERNATE_FEEDRATE);

@@ -16,10 +16,16 @@
 #include "firmware/run/shared_statements.h"
 #include "firmware/run/synchronous.h"
 
+/* What stands in Isx89 otherwise is no F: Isx98 leaves it alone. */
+static double clipped(uint32_t cs, double feedrate) {
+  const double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT);
+  return limit > 0.0 && feedrate > limit ? limit : feedrate;
+}
+
 static void set_rate(uint32_t cs, uint32_t rate, double value) {
   static const uint8_t VARIABLE[] = {ISX89_FEEDRATE, ISX89_FEEDRATE, ISX87_ACCELERATION_TIME,
                                      ISX88_S_CURVE_TIME}; /* F, TM, TA, TS */
-  i_variable_write(i_cs(cs, 0) + VARIABLE[rate], value);
+  i_variable_write(i_cs(cs, 0) + VARIABLE[rate], rate == RATE_F ? clipped(cs, value) : value);
   if (rate == RATE_F) coordinate_systems[cs].time_mode = false;
   if (rate == RATE_TM) coordinate_systems[cs].time_mode = true;
 }

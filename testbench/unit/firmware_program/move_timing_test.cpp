@@ -70,6 +70,23 @@ TEST_F(MoveTiming, FeedrateIsClippedToIsx98) {
   EXPECT_EQ(run(), ticks_of(1000.0 + 10.0)) << "not raised to it";
 }
 
+// firmware:7.1/4: F alone is clipped, when it is executed, and Isx89 reads what it is then.
+TEST_F(MoveTiming, Isx98ClipsNothingButF) {
+  ASSERT_EQ(host("CLOSE I5198=10 I5189=100 OPEN ROT"), "");
+  lines({"TA10 TS0 X5"});
+  EXPECT_EQ(run(), ticks_of(50.0 + 10.0)) << "a feedrate that stands in Isx89";
+  lines({"I5189=50 X10"});
+  EXPECT_EQ(run(), ticks_of(100.0 + 10.0)) << "and one that the program writes there";
+  lines({"TM50 X15"});
+  EXPECT_EQ(run(), ticks_of(50.0 + 10.0)) << "a time";
+  EXPECT_EQ(host("I5189"), "50");
+  lines({"F100 I5198=5 X20"});
+  EXPECT_EQ(run(), ticks_of(500.0 + 10.0)) << "by Isx98 as it was at the F";
+  EXPECT_EQ(host("I5189"), "10");
+  lines({"I5198=0 F100 X25"});
+  EXPECT_EQ(run(), ticks_of(50.0 + 10.0)) << "0: none";
+}
+
 TEST_F(MoveTiming, TimeUnitIsx90MakesItPerMinute) {
   ASSERT_EQ(host("CLOSE I5190=60000 OPEN ROT"), "");
   lines({"TA10 TS0 F600 X5"});
