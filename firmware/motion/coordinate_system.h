@@ -120,7 +120,8 @@ struct coordinate_system {
   bool continuous;              /* B: R, not S */
   bool stepping;                /* B sets, R clears when the step's move is calculated */
   volatile bool quit;           /* Q, or the end of a step: calculate no more */
-  bool ended;                   /* R: the end of the program was reached since its start, `quit` is that */
+  bool ended;                   /* R: the end of the program was reached since its start, */
+  bool own_stop;                /* R: or a STOP or a run-time error: `quit` is that, no start before it undoes it */
   volatile bool end_block;      /* `/`: no further move is started */
   bool quit_at_block;           /* B: `/` of motors, a Q that status shows until a start */
   /* moves are dropped: set by B or R; virtual axes stand still, motors leave the path; R finds the position and clears

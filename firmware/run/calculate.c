@@ -55,13 +55,14 @@ static void stop_with_error(uint32_t cs) {
   p->under_way = false;
   /* Behind the last pause: R there would forget both. */
   s->error = cause;
-  s->quit = true;
+  s->quit = s->own_stop = true;
 }
 
 /* The program has ended: it stands at its top again, and stops when its moves are over. */
 static void end(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
   motion_program_restart(cs);
-  coordinate_systems[cs].quit = coordinate_systems[cs].ended = true;
+  s->quit = s->own_stop = s->ended = true;
 }
 
 static void planned(uint32_t cs) {

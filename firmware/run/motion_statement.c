@@ -124,7 +124,7 @@ static bool is_mark(uint32_t cs, const struct instruction* in) {
   if (in->operation != OP_STATEMENT) return false;
   switch (in->number) {
     case KEY_STOP:
-      s->quit = true;
+      s->quit = s->own_stop = true;
       break;
     case KEY_BLOCKSTART:
       p->in_block = true;

@@ -160,15 +160,16 @@ error_t run_start(uint32_t cs, bool single_step) {
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
     s->first = true;
     s->slots_short = false;
+    s->own_stop = s->own_stop && waits; /* behind the moves that are still to be made */
     s->ended = s->ended && waits;
     if (!s->next_valid) s->may_join = false;
   }
   s->end_block = s->quit_at_block = false;
-  s->quit = s->ended || (single_step && waits); /* it stands at its top again, for another start; one of those alone */
+  s->quit = s->own_stop || (single_step && waits); /* what comes behind it is for another start; one of those alone */
   segment_go_on(cs, single_step && waits);
   s->stepping = single_step;
   s->continuous = !single_step;
-  s->error = RUN_TIME_NONE;
+  if (!s->own_stop) s->error = RUN_TIME_NONE;
   if (!s->running) s->failure = RUN_TIME_NONE;
   s->running = true;
   cs_awake |= 1u << cs;

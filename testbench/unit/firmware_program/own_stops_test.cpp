@@ -1,0 +1,95 @@
+// What a program stops by itself for, its STOP or a run-time error, is calculated ahead of the moves before it: no
+// start that comes while those execute, or wait behind a stop, goes on behind it (motion:5.6/6).
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+namespace {
+
+using namespace moving_motors;
+
+class OwnStops : public MovingMotors {
+ protected:
+  void begin(const std::string& prepare) {
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I115=1 I119=1 I120=20 I121=0 I192=1 I116=50 I117=1 I5195=200000 P11=0 DELETE GATHER"), "");
+    ASSERT_EQ(host("&1 DEFINE LOOKAHEAD 300,10 " + prepare), "");
+  }
+  static void ticks(double ms) { platform::servo_ticks(ticks_of(ms)); }
+  // 100 ms apart from each other, beginning 100 ms behind the start.
+  static void orders(const Lines& lines) {
+    for (const std::string& order : lines) {
+      ticks(100);
+      ASSERT_EQ(host(order), "") << order;
+    }
+  }
+  static void stands_at(double counts) {
+    for (int i = 0; i < 100 && run_is_running(0); ++i) ticks(20);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(motors[0].trajectory, std::llround(counts * kUnit));
+  }
+  static std::string number() { return host("RY$2014"); }
+};
+
+constexpr const char* kWays[] = {"I5113=0", "I5113=5", "I5113=5 I5120=40"};
+const Lines kOrders[] = {{"R"}, {"H", "R"}, {"\\", "R"}, {"\\", ">"}, {"Q", "R"}, {"/", "R"}, {"S", "R"}};
+
+TEST_F(OwnStops, StopHoldsWhateverStartsComeBeforeIt) {
+  for (const char* way : kWays)
+    for (const Lines& between : kOrders) {
+      SCOPED_TRACE(way + (" " + between.front()) + " " + between.back());
+      begin(way);
+      store({"LINEAR TM500 TA20 TS0 X1", "P11=1", "STOP", "P11=2", "X2", "X3"});
+      ASSERT_EQ(host("B1R"), "");
+      orders(between);
+      stands_at(1000);
+      EXPECT_EQ(p_variable_read(11), 1.0);
+      ASSERT_EQ(host("R"), "") << "at the STOP it goes on";
+      stands_at(3000);
+      EXPECT_EQ(p_variable_read(11), 2.0);
+    }
+}
+
+// Of a rotary buffer the line in error goes: nothing would tell of it any more.
+TEST_F(OwnStops, ARunTimeErrorIsNotForgottenBeforeItsPlace) {
+  for (const char* way : kWays)
+    for (const Lines& between : kOrders) {
+      SCOPED_TRACE(way + (" " + between.front()) + " " + between.back());
+      begin(way);
+      ASSERT_EQ(host("DEFINE ROT 100 B0 OPEN ROT"), "");
+      for (const char* line : {"LINEAR TM500 TA20 TS0 X1", "CC1", "X2", "CLOSE R"}) ASSERT_EQ(host(line), "") << line;
+      ticks(50);
+      ASSERT_EQ(number(), "1") << "found ahead";
+      orders(between);
+      EXPECT_EQ(number(), "1");
+      stands_at(1000);
+      EXPECT_EQ(number(), "1");
+      ASSERT_EQ(host("R"), "");
+      EXPECT_EQ(number(), "0");
+      ticks(600);
+      EXPECT_EQ(motors[0].trajectory, std::llround(2000 * kUnit));
+    }
+}
+
+// Moves that Q has left between it and the STOP are made first, by steps too.
+TEST_F(OwnStops, StopHoldsBehindMovesThatWait) {
+  for (const char* start : {"R", "S"}) {
+    begin("I5113=5");
+    store({"LINEAR TM100 TA20 TS0 X1", "X2", "X3", "STOP", "P11=1 X4"});
+    ASSERT_EQ(host("B1R"), "");
+    ticks(30);
+    ASSERT_EQ(host("Q"), "");
+    stands_at(1000);
+    if (*start == 'S') {
+      ASSERT_EQ(host("S"), "");
+      stands_at(2000);
+    }
+    ASSERT_EQ(host(start), "");
+    stands_at(3000);
+    EXPECT_EQ(p_variable_read(11), 0.0);
+    ASSERT_EQ(host(start), "");
+    stands_at(4000);
+    EXPECT_EQ(p_variable_read(11), 1.0);
+  }
+}
+
+}  // namespace
