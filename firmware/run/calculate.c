@@ -180,13 +180,15 @@ static bool settle(uint32_t cs) {
   return true;
 }
 
-/* What is calculated is dropped, motors ramp to rest. */
+/* What is calculated is dropped, motors ramp to rest: off the path, so there is no place on it to come back to. Without
+ * a cause what the program has met ahead stays its error. */
 static void fail(uint32_t cs, enum run_time_error cause) {
   struct coordinate_system* s = &coordinate_systems[cs];
   system_motors_ramp(cs);
   s->failure = RUN_TIME_NONE;
-  s->error = cause;
+  if (cause != RUN_TIME_NONE) s->error = cause;
   s->running = s->quit = s->stepping = s->matching = false;
+  s->must_return = s->must_have_returned = false;
   s->settling = true;
 }
 

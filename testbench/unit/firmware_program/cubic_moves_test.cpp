@@ -95,6 +95,45 @@ TEST_F(CubicMoves, PvtThatEndsInMotionIsStopped) {
   }
 }
 
+// motion:5.6/4: behind Q its ramp leaves the path, and R goes on from there, or from where a jog has taken it.
+TEST_F(CubicMoves, RunGoesOnBehindTheRampOfAPvtMove) {
+  for (const char* prepare : {"I5113=0", "I5113=5"})
+    for (const char* stop : {"Q", "/", "S"})
+      for (const char* jog : {"", "#1J:-50"}) {
+        SCOPED_TRACE(std::string(prepare) + " " + stop + jog);
+        platform::power_up();
+        fit({"1000X"});
+        ASSERT_EQ(host("I115=1 I119=1 I120=20 I121=0 I192=1"), "");
+        ASSERT_EQ(host(prepare), "");
+        store({"PVT150 X1:5", "X2:10", "X3:5", "X3.5:0", "LINEAR TM100 X4"});
+        ASSERT_EQ(host("&1B1R"), "");
+        platform::servo_ticks(ticks_of(200));
+        ASSERT_EQ(host(stop), "");
+        platform::servo_ticks(ticks_of(600));
+        EXPECT_FALSE(run_is_running(0));
+        EXPECT_EQ(host("RY$2014"), "0");
+        EXPECT_GT(at(1), 3000.0 + 5.0 * 5.0 / 2.0) << "X3 is calculated; 5 counts a ms, Ixx15 = 1";
+        EXPECT_LT(at(1), 3000.0 + 5.0 * 5.0 / 2.0 + 5.0 * 5.0);
+        ASSERT_EQ(host(jog), "");
+        platform::servo_ticks(ticks_of(150));
+        ASSERT_EQ(host("R"), "");
+        platform::servo_ticks(ticks_of(500));
+        EXPECT_FALSE(run_is_running(0));
+        EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
+      }
+}
+
+// What comes behind it is an error that was met ahead of its end: it is told, though the program has ended for it.
+TEST_F(CubicMoves, ARunTimeErrorBehindAPvtMoveInMotionIsShown) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I115=1"), "");
+  store({"PVT100 X1:20", "CC1", "X2:0"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(300));
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(host("RY$2014"), "1");
+}
+
 // Without the real-time task it goes on at its last velocity.
 TEST_F(CubicMoves, PvtRunsOnUntilItIsStopped) {
   fit({"1000X"});
