@@ -170,6 +170,11 @@ void jog_program_takes(uint32_t motor) {
 
 bool jog_is_moving(uint32_t motor) { return (jogs_busy & jog_bit(motor)) != 0u; }
 
+bool jog_is_to_ramp(uint32_t motor) {
+  const struct jog* j = &jogs[motor];
+  return (j->ready || (jogs_asked & jog_bit(motor)) != 0u) && j->request.aim == AIM_RAMP;
+}
+
 bool jog_is_of_program(uint32_t motor) { return jog_is_moving(motor) && jog_present(&jogs[motor])->by_program; }
 
 bool jog_is_homing(uint32_t motor) {

@@ -33,6 +33,7 @@ void jog_program_takes(uint32_t motor); /* a program moves it from now on: PATH_
 
 /* Any task. More of it stands in the motor's status flags (motion/motor.h). */
 bool jog_is_moving(uint32_t motor);     /* on its way, or about to be */
+bool jog_is_to_ramp(uint32_t motor);    /* that has been asked for and has not begun */
 bool jog_is_of_program(uint32_t motor); /* so, and a program waits for it, held or not */
 bool jog_is_homing(uint32_t motor);     /* searches for home: software limits do not count */
 

@@ -16,6 +16,7 @@ enum { SERVO_CYCLES_TO_PLAN = 2, SERVO_CYCLES_GIVEN_UP = 1024 };
 /* What planning begins with, of one moment. */
 struct beginning {
   uint32_t requests;
+  int32_t rate; /* of the system, for motion.rate */
   struct jog_motion motion;
   int64_t begins;
   struct own_path_place place;
@@ -51,6 +52,16 @@ static void place_of_program(struct own_path_place* place, uint32_t motor, int64
   own_path_stands(place, m->trajectory);
 }
 
+/* A hold slows the program down, not the ramp off it: that goes on at the time base as commanded, from the velocity
+ * that is left by then. */
+static void set_rates(struct beginning* b, struct jog* j, const struct motor* m) {
+  const struct coordinate_system* s = &coordinate_systems[m->cs];
+  const bool by_program = m->path == PATH_SYSTEM || jog_now(j)->by_program;
+  const bool slowed = b->motion.aim == AIM_RAMP && s->held && by_program && s->increment != s->increment_command;
+  b->rate = s->increment;
+  b->motion.rate = slowed ? s->increment_command : 0;
+}
+
 /* Servo task held off. */
 static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
   struct jog* j = &jogs[motor];
@@ -64,6 +75,7 @@ static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
   jog_not_ready(motor);
   b->requests = j->requests;
   b->motion = j->request;
+  set_rates(b, j, m);
   b->begins = j->clock + (int64_t)j->rate * (int64_t)cycles;
   if (b->begins < j->request_begins) b->begins = j->request_begins;
   if (m->path == PATH_OWN) {
@@ -159,7 +171,8 @@ static bool plan(uint32_t motor) {
     hal_unmask(state);
     if (to_do != LOOK_PLAN) return false;
     slice_pause();
-    const struct own_path_state from = own_path_state(&b.place);
+    struct own_path_state from = own_path_state(&b.place);
+    if (b.motion.rate != 0) from.speed *= math_divide((double)b.rate, (double)b.motion.rate);
     struct own_path* path = &jogs[motor].paths[jogs[motor].current ^ 1u];
     build(path, &b.motion, from);
     slice_pause();

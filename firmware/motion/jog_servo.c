@@ -16,17 +16,9 @@ static int32_t approach(int32_t present, int32_t target, int32_t slew) {
 
 static bool searches_without_end(const struct jog_motion* motion) { return motion->aim == AIM_SPEED; }
 
-/* The new path begins where the old one is, planned for this moment. A ramp off the path of a system, whose time may
- * have changed since, begins where the motor is now: false. */
-static bool change_over(uint32_t motor) {
-  struct jog* j = &jogs[motor];
-  struct motor* m = &motors[motor];
-  FIXED_IN_REGISTER(j);
-  FIXED_IN_REGISTER(m);
-  struct own_path* path = &j->paths[j->current ^ 1u];
+/* The new path begins where the old one is, planned for this moment. */
+static inline void change_over(struct jog* j, struct motor* m) {
   const struct jog_motion* next = jog_next(j);
-  const bool as_planned = next->aim != AIM_RAMP || m->path != PATH_SYSTEM;
-  if (!as_planned) path->shift = m->trajectory - path->start;
   j->current ^= 1u;
   j->ready = false;
   m->path = PATH_OWN;
@@ -34,7 +26,24 @@ static bool change_over(uint32_t motor) {
   m->status.aborting = next->aim == AIM_RAMP;
   m->status.home_search = next->searches;
   if (next->searches) capture_arm(&next->capture);
-  return as_planned;
+}
+
+/* Off the path of a system, whose time may have changed since it was planned, it begins where the motor is now. At a
+ * rate of its own it makes that of the interrupt at this rate. */
+static __attribute__((noinline)) int32_t ramp_begins(uint32_t motor, int32_t since) {
+  struct jog* j = &jogs[motor];
+  struct motor* m = &motors[motor];
+  const int32_t before = j->rate, rate = jog_next(j)->rate;
+  int32_t elapsed = since;
+  if (m->path == PATH_SYSTEM) {
+    struct own_path* path = &j->paths[j->current ^ 1u];
+    path->shift = m->trajectory - path->start;
+    elapsed = 0;
+  }
+  change_over(j, m);
+  if (rate == 0) return elapsed;
+  j->rate = rate;
+  return before == 0 ? elapsed : (int32_t)((int64_t)elapsed * rate / before);
 }
 
 static void found(uint32_t motor, int64_t position) {
@@ -82,16 +91,24 @@ static __attribute__((noinline)) void search(uint32_t motor) {
   if (capture_servo(motor, &jog_now(&jogs[motor])->capture, &position)) found(motor, position);
 }
 
+/* A ramp ends as it begins: no change of the time base makes it slower, or quicker than the motor was. */
 static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t target) {
+  if (jog_now(&jogs[motor])->aim == AIM_RAMP) return jogs[motor].rate;
   const int32_t slew = coordinate_systems[motors[motor].cs].increment_slew;
   return approach(jogs[motor].rate, target, slew);
 }
 
 /* What of this interrupt belongs to the new path; below 0: it has not begun. */
 static __attribute__((noinline)) int32_t begins(uint32_t motor) {
-  const int64_t since = jogs[motor].clock - jogs[motor].next_begins;
+  struct jog* j = &jogs[motor];
+  struct motor* m = &motors[motor];
+  FIXED_IN_REGISTER(j);
+  FIXED_IN_REGISTER(m);
+  const int64_t since = j->clock - j->next_begins;
   if (since < 0) return -1;
-  return change_over(motor) ? (int32_t)since : 0;
+  if (jog_next(j)->aim == AIM_RAMP) return ramp_begins(motor, (int32_t)since);
+  change_over(j, m);
+  return (int32_t)since;
 }
 
 void jog_move(uint32_t motor) {

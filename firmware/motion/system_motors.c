@@ -9,6 +9,7 @@
 #include "firmware/motion/kinematics.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/rollover.h"
+#include "firmware/motion/time_base.h"
 #include "firmware/variables/i_variables.h"
 
 enum { AXES_OF_A_MOTOR = 3 };
@@ -292,7 +293,8 @@ void system_motors_begin(uint32_t cs) {
 
 bool system_motors_leave(uint32_t cs) {
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0 && motors[motor].path == PATH_SYSTEM && jog_is_moving(motor)) return true;
+    if ((left & 1u) != 0 && jog_is_moving(motor) && (motors[motor].path == PATH_SYSTEM || jog_is_to_ramp(motor)))
+      return true;
   return false;
 }
 
@@ -307,6 +309,7 @@ bool system_motors_are_away(uint32_t cs) {
 }
 
 void system_motors_ramp(uint32_t cs) {
+  time_base_stay(cs);
   for (uint32_t motor = 0; motor < MOTORS; motor++)
     if (axis_definitions[motor].assigned && axis_definitions[motor].cs == cs)
       (void)jog_stop_at(motor, i_variable_read(i_motor_real(motor + 1u, IXX15_ABORT_DECELERATION)));

@@ -43,8 +43,9 @@ bool system_motor_behind(uint32_t motor, uint32_t axes, const double distance[AX
 /* Axes are where motors are commanded to be; exact if they were, but for what a forward program tells. False: that one
  * has failed (coordinate_system.failure). */
 bool system_motors_match(uint32_t cs);
-void system_motors_begin(uint32_t cs);    /* the same, and the program moves them from now on */
-bool system_motors_leave(uint32_t cs);    /* after an abort: some are still on its path, about to leave it */
+void system_motors_begin(uint32_t cs); /* the same, and the program moves them from now on */
+bool system_motors_leave(
+    uint32_t cs); /* after an abort: some are still on its path or a move of their own, about to leave it */
 bool system_motors_are_away(uint32_t cs); /* not where the program has left them */
 void system_motors_take(uint32_t cs);     /* the program goes on with them: they have been jogged and are back */
 

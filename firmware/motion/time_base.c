@@ -20,6 +20,23 @@ void time_base_command(uint32_t cs, int32_t command) {
   hal_unmask(state);
 }
 
+void time_base_stay(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = hal_mask_servo();
+  s->increment_target = s->increment;
+  hal_unmask(state);
+}
+
+void time_base_go_on(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = hal_mask_servo();
+  if (s->held) time_base_slew(cs, s->increment_command, ISX95_FEED_HOLD_SLEW);
+  s->increment_target = s->increment_command;
+  s->held = false;
+  cs_busy |= 1u << cs;
+  hal_unmask(state);
+}
+
 /* The time base words of systems are not in memory: those are what these have. An address where nothing is holds time.
  */
 static const volatile uint32_t* source(uint32_t cs, uint32_t address) {

@@ -18,6 +18,7 @@
 #include "firmware/motion/position.h"
 #include "firmware/motion/segment.h"
 #include "firmware/motion/system_motors.h"
+#include "firmware/motion/time_base.h"
 #include "firmware/run/calls.h"
 #include "firmware/run/motion_program.h"
 #include "firmware/run/motion_statement.h"
@@ -153,8 +154,8 @@ static bool calculate_word(uint32_t cs) {
 }
 
 /* After an abort: the axes are where the stopped trajectory has them, what is left of a begun line is lost. Motors have
- * left the path by then, each on a ramp of its own. The servo task looks at nothing else while `settling`, so it falls
- * last. */
+ * left the path by then, each on a ramp of its own, so time goes on. The servo task looks at nothing else while
+ * `settling`, so it falls last. */
 static bool settle(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   double position[AXIS_COUNT];
@@ -175,20 +176,20 @@ static bool settle(uint32_t cs) {
   segment_forget(cs);
   s->active = s->next_valid = s->placed = s->moves[s->executing].overruns = false;
   s->planned = s->started;
+  s->must_return = s->must_have_returned = false; /* there is no place on a path to come back to */
   s->settling = false;
   hal_unmask(state);
+  time_base_go_on(cs);
   return true;
 }
 
-/* What is calculated is dropped, motors ramp to rest: off the path, so there is no place on it to come back to. Without
- * a cause what the program has met ahead stays its error. */
+/* What is calculated is dropped, motors ramp to rest. Without a cause the error is what the program has met ahead. */
 static void fail(uint32_t cs, enum run_time_error cause) {
   struct coordinate_system* s = &coordinate_systems[cs];
   system_motors_ramp(cs);
   s->failure = RUN_TIME_NONE;
   if (cause != RUN_TIME_NONE) s->error = cause;
   s->running = s->quit = s->stepping = s->matching = false;
-  s->must_return = s->must_have_returned = false;
   s->settling = true;
 }
 

@@ -33,15 +33,6 @@ static void drop_moves(uint32_t cs) {
   calculate_forget(cs);
 }
 
-static void release_hold(uint32_t cs) {
-  struct coordinate_system* s = &coordinate_systems[cs];
-  if (!s->held) return;
-  uint32_t state = hal_mask_servo();
-  s->held = false;
-  time_base_slew(cs, s->increment_command, ISX95_FEED_HOLD_SLEW);
-  hal_unmask(state);
-}
-
 /* What is still to be settled after an abort is begun anew: it is about the new program then. A line of the rotary
  * buffer that was begun is lost, whatever was pointed to meanwhile. */
 static void point(uint32_t cs, uint32_t number, uint32_t offset) {
@@ -142,7 +133,7 @@ error_t run_start(uint32_t cs, bool single_step) {
   if (s->running && (s->held || segment_stands(cs))) system_motors_take(cs);
   if (s->running) segment_order(cs, LOOKAHEAD_FORWARD);
   s->must_return = false;
-  release_hold(cs);
+  time_base_go_on(cs);
   if (s->running && single_step) {
     if (s->continuous) run_quit(cs); /* while a step waits for its move, one more changes nothing */
     s->continuous = false;
@@ -221,7 +212,6 @@ void run_abort(uint32_t cs) {
   s->quit_at_block = false;
   s->must_have_returned = s->restarts = false;
   hal_unmask(state);
-  release_hold(cs);
 }
 
 void run_hold(uint32_t cs) {
@@ -251,7 +241,7 @@ static error_t go(uint32_t cs, enum lookahead_order order) {
   if (error != ERR_NONE) return error;
   if (s->held || segment_stands(cs)) system_motors_take(cs);
   s->must_return = false;
-  release_hold(cs);
+  time_base_go_on(cs);
   segment_order(cs, order);
   return ERR_NONE;
 }
