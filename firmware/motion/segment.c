@@ -17,7 +17,7 @@ bool segment_is_under_way(uint32_t cs) { return sequences[cs].runs; }
 bool segment_gives_way(uint32_t cs) {
   struct sequence* q = &sequences[cs];
   if (!q->runs) return true;
-  if (q->joined == paths[cs].count) q->closed = true; /* else further sequences come before it */
+  q->closed = true;
   return false;
 }
 

@@ -190,4 +190,33 @@ TEST_F(ChangingModes, APlaceBehindPvtInMotionIsInTimeOrLate) {
   EXPECT_GT(late, 50u);
 }
 
+// A stop and then the end of the PVT move come while the next one is calculated: behind it that is late, and lost.
+TEST_F(ChangingModes, AMoveThatIsLateIsAnErrorBehindAStopToo) {
+  for (const char* settings : {"I5113=0", "I5113=5"}) {
+    unsigned late = 0;
+    for (unsigned when = 1; when < 60; ++when) {
+      SCOPED_TRACE(std::string(settings) + ", pause " + std::to_string(when));
+      begin(settings);
+      store({"TA20 TS0 PVT150 X1:5", "LINEAR TM100 X3 Y1"});
+      ASSERT_EQ(host("&1B1R"), "");
+      for (int i = 0; i < 200 && !cs().active; ++i) platform::servo_ticks(1);
+      for (unsigned i = ticks_of(150); i > 1; --i) fake_task_run_servo();
+      const std::uint32_t planned = cs().planned;
+      unsigned pauses = 0;
+      platform::real_time_in_slices([&] {
+        if (cs().pending_axes == 0 || ++pauses != when) return;
+        run_quit(0);
+        for (int i = 0; i < 4; ++i) fake_task_run_servo();
+      });
+      if (pauses < when) break;
+      const bool calculated = cs().planned != planned;
+      go(200, 9);
+      ASSERT_TRUE(stands());
+      ASSERT_EQ(cs().error, calculated ? RUN_TIME_LATE : RUN_TIME_NONE);
+      late += calculated;
+    }
+    EXPECT_GT(late, 0u) << settings;
+  }
+}
+
 }  // namespace
