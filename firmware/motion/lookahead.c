@@ -215,7 +215,7 @@ static void add_point(struct look* l, struct lookahead_record* record, const int
       point = guarded(motor, point, at < SPLINE_POINTS - 1u ? record : segment);
     }
     to[slot] = (struct lookahead_motor){point, 0, 0};
-    if (l->limits && at != 0) {
+    if (at != 0) {
       const int32_t step = coarse_step(motor, point - last[slot].point);
       if (at >= 2u) set_limits(l, motor, step, &knot[slot], segment);
       scales[motor].before = scales[motor].last;

@@ -241,6 +241,15 @@ int32_t limits_least(enum limits_end end, int32_t w, int32_t most) {
   return least > most ? -1 : least;
 }
 
+int32_t limits_change(void) {
+  int32_t largest = 0;
+  for (uint32_t i = 0; i < count; i++)
+    for (uint32_t k = 0; k < 3u; k++)
+      if (magnitude(motor_parts[i].pace[k]) > largest) largest = magnitude(motor_parts[i].pace[k]);
+  slice_pause();
+  return largest == 0 ? INT32_MAX : divide(INSIDE, largest);
+}
+
 /* The w at the other end at which two limits are met at once; below 0: none from 0 to 1. */
 static int32_t meeting(enum limits_end end, const struct edge* a, const struct edge* b) {
   int64_t over = (a->above ? b->c[end] : -(int64_t)b->c[end]);

@@ -28,6 +28,9 @@ void limits_load_part(const struct lookahead_motor* at, const struct lookahead_m
 /* The largest and the smallest w at one end, at most `most`, when it is `w` at the other. Below 0: there is none. */
 int32_t limits_most(enum limits_end end, int32_t w, int32_t most);
 int32_t limits_least(enum limits_end end, int32_t w, int32_t most);
+/* How much w may change over a part whose bends ask for more than the limits anyway: by what is gained along it alone.
+ */
+int32_t limits_change(void);
 /* The largest w at one end, at most `most`, with some w of at most `other` at the other. */
 int32_t limits_reach(enum limits_end end, int32_t other, int32_t most);
 

@@ -120,7 +120,7 @@ static bool sweep_back(struct look* l) {
 bool lookahead_sweep(uint32_t cs, bool hurry) {
   struct look* l = &looks[cs];
   slice_pause();
-  if (!l->limits || l->state != LOOK_GOES) return false;
+  if (!look_is_limited(l) || l->state != LOOK_GOES) return false;
   return l->backward ? sweep_back(l) : sweep_forward(cs, l, hurry);
 }
 
@@ -186,6 +186,16 @@ static void stand(struct look* l) {
   l->rate = 0;
 }
 
+/* The least w at the end of what is loaded; below 0: none. A program that is not limited may be beyond the limits. */
+static int32_t slowest(const struct look* l, int32_t cap) {
+  int32_t least = limits_least(far_end(l), l->rate, cap);
+  if (least < 0 && !look_is_limited(l)) {
+    const int32_t change = limits_change();
+    least = change < l->rate ? l->rate - change : 0;
+  }
+  return least >= SLOWEST || least < 0 ? least : 0;
+}
+
 /* As soon as it can: within the next part, at a quarter of it, or as slow as can be at its end. */
 static bool stop(struct look* l, struct lookahead_piece* piece) {
   struct next_part p;
@@ -193,12 +203,11 @@ static bool stop(struct look* l, struct lookahead_piece* piece) {
     stand(l);
     return false;
   }
-  const int32_t cap = lookahead_at(&l->buffer, p.segment)->cap;
+  const int32_t cap = look_is_limited(l) ? lookahead_at(&l->buffer, p.segment)->cap : RATE_FULL;
   for (uint32_t i = STOP_PARTS; i <= PIECE_PARTS; i += STOP_PARTS) {
     const uint32_t last = l->backward ? p.first - i : p.first + i;
     load_next(l, &p, last);
-    int32_t least = limits_least(far_end(l), l->rate, cap);
-    if (least >= 0 && least < SLOWEST) least = 0;
+    const int32_t least = slowest(l, cap);
     const bool over = last == p.last;
     if (least != 0 && !over) continue;
     hand(l, p.segment, p.first, last, least >= 0 ? least : l->rate < cap ? l->rate : cap, piece);
@@ -233,7 +242,7 @@ static bool single(struct look* l, struct lookahead_piece* piece) {
 
 /* Whether the front may go on: what the sweep says of the next knot is not about its own end, or time runs short. */
 static bool may_go_on(const struct look* l, bool hurry) {
-  if (!l->limits) return true;
+  if (!look_is_limited(l)) return true;
   if (l->backward) return l->swept_back;
   if (l->front + 1u <= l->good) return true;
   if (!hurry || l->front + 1u > l->swept) return false;
@@ -244,6 +253,22 @@ static bool may_go_on(const struct look* l, bool hurry) {
 static bool is_at_limit(const struct look* l) {
   return l->limits && !l->backward && l->part == 0 && (!l->begun || l->rate == 0) &&
          lookahead_at(&l->buffer, l->front)->stops;
+}
+
+/* At the end of the next part, of a path that is limited. */
+static int32_t limited_rate(const struct look* l, const struct next_part* p) {
+  int32_t to = limits_most(far_end(l), l->rate, *rate_at(l, p->knot));
+  /* where rounding leaves none between what two limits ask for: the least is nearest to both */
+  if (to < 0) to = limits_least(far_end(l), l->rate, *rate_at(l, p->knot));
+  return to < 0 ? *rate_at(l, p->knot) : to;
+}
+
+/* Behind a stop: as soon as it may back to the rate of the program, though that is beyond the limits. */
+static int32_t rising_rate(const struct look* l) {
+  const int32_t to = limits_most(far_end(l), l->rate, RATE_FULL);
+  if (to > l->rate) return to;
+  const int32_t change = limits_change();
+  return change < RATE_FULL - l->rate ? l->rate + change : RATE_FULL;
 }
 
 static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
@@ -258,17 +283,16 @@ static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
     return false;
   }
   if (!may_go_on(l, hurry)) return false;
-  if (l->limits && is_free(l, l->front) && l->part == 0 && (!l->begun || l->rate == 0)) l->rate = *rate_at(l, l->front);
+  const bool limited = look_is_limited(l);
+  if (is_free(l, l->front) && l->part == 0 && (!l->begun || l->rate == 0))
+    l->rate = limited ? *rate_at(l, l->front) : RATE_FULL;
   int32_t to = RATE_FULL;
-  if (l->limits) {
+  if (limited || l->rate != RATE_FULL) {
     slice_pause();
     load_next(l, &p, p.last);
-    to = limits_most(far_end(l), l->rate, *rate_at(l, p.knot));
-    /* where rounding leaves none between what two limits ask for: the least is nearest to both */
-    if (to < 0) to = limits_least(far_end(l), l->rate, *rate_at(l, p.knot));
-    if (to < 0) to = *rate_at(l, p.knot);
+    to = limited ? limited_rate(l, &p) : rising_rate(l);
     if (to == 0 && l->rate == 0) {
-      if (!l->backward) return false; /* for want of what comes behind it */
+      if (limited && !l->backward) return false; /* for want of what comes behind it */
       return single(l, piece);
     }
   }

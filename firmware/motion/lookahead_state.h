@@ -17,7 +17,7 @@ enum look_state { LOOK_GOES, LOOK_STOPS, LOOK_STANDS };
 struct look {
   struct lookahead_buffer buffer;
   uint32_t length;  /* Isx20, as far as the buffer has room */
-  bool limits;      /* Isx20 above 1 */
+  bool limits;      /* Isx20 above 1: of the program, too; else of what orders ask for */
   bool closed;      /* the points so far are all */
   uint32_t guarded; /* motors whose desired positions are limited */
   uint32_t motors, motor_count;
@@ -54,6 +54,8 @@ static inline uint32_t look_end(const struct look* l) {
 static inline uint32_t look_oldest(const struct look* l) {
   return l->added > l->buffer.records ? l->added - l->buffer.records : 0u;
 }
+/* The way back and stops keep to the limits whatever the program does. */
+static inline bool look_is_limited(const struct look* l) { return l->limits || l->backward; }
 /* For a new direction: nothing of the sweeps counts. */
 static inline void look_forget_sweeps(struct look* l) {
   l->sweeping = l->swept_back = false;
