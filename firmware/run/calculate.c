@@ -136,7 +136,7 @@ static bool calculate_word(uint32_t cs) {
   }
   if (executed == EXECUTED_LINE) line_ends(cs);
   if (executed == EXECUTED_LINE || executed == EXECUTED_END) s->sets_normal = false;
-  p->under_way = executed == EXECUTED_WORD;
+  p->under_way = executed == EXECUTED_WORD && !s->own_stop; /* behind STOP the rest of its line is for another start */
   if ((executed == EXECUTED_LINE || executed == EXECUTED_END) && s->pending_axes != 0) {
     if (motion_plan_line(cs) == EXECUTED_ERROR) executed = EXECUTED_ERROR;
   } else if (executed == EXECUTED_LINE) {

@@ -54,7 +54,7 @@ error_t run_point(uint32_t cs, double program) {
     s->settling = true;
     cs_awake |= 1u << cs;
   }
-  s->quit_at_block = false;
+  s->quit_at_block = s->own_stop = false;
   s->end_block = s->must_return = s->must_have_returned = s->restarts = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
@@ -124,12 +124,23 @@ static bool moves_wait(uint32_t cs) {
   return !s->settling && (s->next_valid || segment_is_left(cs));
 }
 
+/* In a hold the program has come to a stop of its own: a start ends the hold, another one goes on behind the stop. */
+static bool ends_hold_alone(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  return s->held && !s->running && s->own_stop && !moves_wait(cs);
+}
+
 error_t run_start(uint32_t cs, bool single_step) {
   struct coordinate_system* s = &coordinate_systems[cs];
   error_t error = check_return(cs);
   if (error == ERR_NONE) error = check_program(cs);
   if (error == ERR_NONE && !s->running) error = kinematic_program_check(cs);
   if (error != ERR_NONE) return error;
+  if (ends_hold_alone(cs)) {
+    s->must_return = false;
+    time_base_go_on(cs);
+    return ERR_NONE;
+  }
   if (s->running && (s->held || segment_stands(cs))) system_motors_take(cs);
   if (s->running) segment_order(cs, LOOKAHEAD_FORWARD);
   s->must_return = false;

@@ -70,6 +70,60 @@ TEST_F(OwnStops, ARunTimeErrorIsNotForgottenBeforeItsPlace) {
     }
 }
 
+// A hold that slows down for so long that the moves before it are over: R ends the hold, and is no start behind it.
+TEST_F(OwnStops, AHoldThatEndsThereIsEndedAlone) {
+  const struct {
+    const char *line, *number;
+    double ends;
+  } stops[] = {{"STOP", "0", 2000}, {"CC1", "1", 1000}, {"RETURN", "0", 1000}};
+  for (const auto& stop : stops)
+    for (const char* start : {"R", ">", "S"}) {
+      SCOPED_TRACE(stop.line + std::string(start));
+      begin("I5195=1644");  // a second, half of it of trajectory time
+      store({"P11=P11+1", "LINEAR TM300 TA20 TS0 X1", stop.line, "X2"});
+      ASSERT_EQ(host("B1R"), "");
+      orders({"H"});
+      ticks(1200);
+      EXPECT_FALSE(run_is_running(0));
+      EXPECT_EQ(host("%"), "0");
+      ASSERT_EQ(host(start), "");
+      stands_at(1000);
+      EXPECT_EQ(number(), stop.number);
+      ticks(1200);
+      EXPECT_EQ(host("%"), "100");
+      stands_at(1000);
+      EXPECT_EQ(p_variable_read(11), 1.0);
+      ASSERT_EQ(host("R"), "");
+      stands_at(stop.ends);
+      EXPECT_EQ(p_variable_read(11), stop.line[0] == 'R' ? 2.0 : 1.0) << "behind its end from the top";
+    }
+}
+
+// Another program is another start.
+TEST_F(OwnStops, AHoldIsEndedByTheStartOfAnotherProgram) {
+  begin("I5195=1644");
+  store({"LINEAR TM300 TA20 TS0 X1", "STOP", "X2"});
+  store({"X3"}, 2);
+  ASSERT_EQ(host("B1R"), "");
+  orders({"H"});
+  ticks(1200);
+  ASSERT_EQ(host("B2R"), "");
+  ticks(2000);
+  stands_at(3000);
+}
+
+// What stands behind it on its line too: a move, an assignment.
+TEST_F(OwnStops, TheRestOfTheLineOfAStopIsForAnotherStart) {
+  begin("I5113=0");
+  store({"LINEAR TM100 TA20 TS0 X1", "P11=1 STOP P11=2 X2", "X3"});
+  ASSERT_EQ(host("B1R"), "");
+  stands_at(1000);
+  EXPECT_EQ(p_variable_read(11), 1.0);
+  ASSERT_EQ(host("R"), "");
+  stands_at(3000);
+  EXPECT_EQ(p_variable_read(11), 2.0);
+}
+
 // Moves that Q has left between it and the STOP are made first, by steps too.
 TEST_F(OwnStops, StopHoldsBehindMovesThatWait) {
   for (const char* start : {"R", "S"}) {
