@@ -181,6 +181,7 @@ struct coordinate_system {
   uint32_t segment_override;   /* R: Isx15 as the last segment had it; no end of a sequence or program changes it */
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
+  int32_t increment_before;          /* S: at the interrupt before its last step */
   volatile int32_t increment_target; /* B */
   volatile int32_t increment_slew;   /* B; S when the target of a hold's end has been reached */
   volatile int32_t increment_usual;  /* B: Isx94, what is slewed by then */

@@ -8,6 +8,7 @@
 #include "firmware/motion/jog.h"
 #include "firmware/motion/jog_state.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/time_base.h"
 
 #define LONGEST_CHANGE_MS 8388608.0
 
@@ -52,14 +53,16 @@ static void place_of_program(struct own_path_place* place, uint32_t motor, int64
   own_path_stands(place, m->trajectory);
 }
 
-/* A hold slows the program down, not the ramp off it: that goes on at the time base as commanded, from the velocity
- * that is left by then. */
+/* What slows the program down on its way to another time base, as a hold does, slows no ramp off it: that goes on at
+ * the one that is commanded, at 100 % for none, from the velocity that is left by then. */
 static void set_rates(struct beginning* b, struct jog* j, const struct motor* m) {
   const struct coordinate_system* s = &coordinate_systems[m->cs];
   const bool by_program = m->path == PATH_SYSTEM || jog_now(j)->by_program;
-  const bool slowed = b->motion.aim == AIM_RAMP && s->held && by_program && s->increment != s->increment_command;
+  const int32_t target = s->held || s->time_base_source == 0 ? s->increment_command : time_base_external(s);
   b->rate = s->increment;
-  b->motion.rate = slowed ? s->increment_command : 0;
+  b->motion.rate = 0;
+  if (b->motion.aim != AIM_RAMP || !by_program || s->increment == target) return;
+  b->motion.rate = target != 0 ? target : s->increment_full;
 }
 
 /* Servo task held off. */

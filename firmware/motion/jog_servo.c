@@ -91,11 +91,13 @@ static __attribute__((noinline)) void search(uint32_t motor) {
   if (capture_servo(motor, &jog_now(&jogs[motor])->capture, &position)) found(motor, position);
 }
 
-/* A ramp ends as it begins: no change of the time base makes it slower, or quicker than the motor was. */
+/* A ramp ends as it begins: no change of the time base makes it slower, or quicker than the motor was. Who has gone at
+ * the rate of the system goes on at that, whatever slews it. */
 static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t target) {
-  if (jog_now(&jogs[motor])->aim == AIM_RAMP) return jogs[motor].rate;
-  const int32_t slew = coordinate_systems[motors[motor].cs].increment_slew;
-  return approach(jogs[motor].rate, target, slew);
+  const struct coordinate_system* s = &coordinate_systems[motors[motor].cs];
+  const int32_t rate = jogs[motor].rate;
+  if (jog_now(&jogs[motor])->aim == AIM_RAMP) return rate;
+  return rate == s->increment_before && target == s->increment ? target : approach(rate, target, s->increment_slew);
 }
 
 /* What of this interrupt belongs to the new path; below 0: it has not begun. */
@@ -105,7 +107,10 @@ static __attribute__((noinline)) int32_t begins(uint32_t motor) {
   FIXED_IN_REGISTER(j);
   FIXED_IN_REGISTER(m);
   const int64_t since = j->clock - j->next_begins;
-  if (since < 0) return -1;
+  if (since < 0) {
+    if (j->rate == 0 && jog_next(j)->aim == AIM_RAMP) jog_drop(motor); /* its time does not come: on the spot */
+    return -1;
+  }
   if (jog_next(j)->aim == AIM_RAMP) return ramp_begins(motor, (int32_t)since);
   change_over(j, m);
   return (int32_t)since;

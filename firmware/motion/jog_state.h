@@ -22,7 +22,7 @@ struct jog_motion {
   bool searches, homes; /* for a trigger; which becomes home */
   bool by_program;      /* held with its coordinate system */
   uint32_t together;    /* motors that begin at the same interrupt, at rest until then; 0: it alone */
-  int32_t rate;         /* of a ramp off what a hold slows down: from its begin on; 0: that of then */
+  int32_t rate;         /* of a ramp off what slews to another: from its begin on; 0: that of then */
   double speed;         /* of AIM_SPEED with sign */
   double deceleration;  /* of AIM_RAMP */
   int64_t target;

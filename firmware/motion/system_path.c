@@ -4,12 +4,11 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/time_base.h"
 
-/* An external time base that runs backwards stops the trajectory. A hold stops it too, whatever the time base is. */
+/* A hold stops the trajectory, and what is about to leave it stays at its rate, whatever the time base is. */
 static int32_t target_of(const struct coordinate_system* s) {
-  if (s->time_base_source == 0 || s->held) return s->increment_target;
-  const int32_t external = hal_signed(*s->time_base_source);
-  return external < 0 ? 0 : external;
+  return s->time_base_source == 0 || s->held || s->settling ? s->increment_target : time_base_external(s);
 }
 
 static void slew_time_base(struct coordinate_system* s) {
@@ -19,6 +18,7 @@ static void slew_time_base(struct coordinate_system* s) {
   else if (present > target)
     s->increment = present - target > slew ? present - slew : target;
   if (s->increment == target && !s->held) s->increment_slew = s->increment_usual; /* a hold's end went at another */
+  s->increment_before = present;
 }
 
 static void go_to(struct motor* m, int64_t position) { m->trajectory = m->of_system = position; }

@@ -20,6 +20,11 @@ void time_base_command(uint32_t cs, int32_t command) {
   hal_unmask(state);
 }
 
+int32_t time_base_external(const struct coordinate_system* s) {
+  const int32_t external = hal_signed(*s->time_base_source);
+  return external < 0 ? 0 : external;
+}
+
 void time_base_stay(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   const uint32_t state = hal_mask_servo();

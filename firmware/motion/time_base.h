@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "firmware/motion/coordinate_system.h"
 #include "firmware/variables/i_variables.h"
 
 void time_base_slew(uint32_t cs, int32_t target, enum i_name rate); /* servo and real-time tasks held off */
@@ -12,8 +13,9 @@ void time_base_slew(uint32_t cs, int32_t target, enum i_name rate); /* servo and
 void time_base_command(uint32_t cs, int32_t command);
 void time_base_stay(uint32_t cs);  /* as it is: motors are about to leave the path, which must not quicken for that */
 void time_base_go_on(uint32_t cs); /* to what is commanded, behind that or a hold, which ends; the latter at Isx95 */
-void time_base_initialize(void);   /* start-up: Isx93 of all */
-void time_base_source_changed(uint32_t cs); /* Isx93 has been written */
-void time_base_slew_changed(uint32_t cs);   /* Isx94 has been written: it acts at once, but for a hold */
+int32_t time_base_external(const struct coordinate_system* s); /* of Isx93: one that runs backwards stops */
+void time_base_initialize(void);                               /* start-up: Isx93 of all */
+void time_base_source_changed(uint32_t cs);                    /* Isx93 has been written */
+void time_base_slew_changed(uint32_t cs); /* Isx94 has been written: it acts at once, but for a hold */
 
 #endif

@@ -183,61 +183,6 @@ double largest_change(double ms, double velocity) {
   return largest;
 }
 
-// motion:4.5/1: what a hold has slowed down comes to rest at Ixx15 from the velocity that it has, and never quickens.
-TEST_F(HoldsAndAborts, AnAbortInAHoldDoesNotQuicken) {
-  for (const char* program : {"TM2500 TA100 TS0 X100", "RAPID X100"})
-    for (const char* abort : {"A", "WY$203F,$400000"})  // by a run-time error, too
-      for (const double within : {0.5, 8.0, 14.0}) {
-        SCOPED_TRACE(std::string(program) + " " + std::to_string(within));
-        platform::power_up();
-        fit({"1000X"});
-        ASSERT_EQ(host("I119=1 I120=20 I121=0 I122=40 I192=1 I115=1 I5195=100000"), "");
-        store({program});
-        begin();
-        ticks(900);
-        ASSERT_EQ(host("H"), "");
-        ticks(within);
-        double velocity = 40 * cs().increment / double{platform::kDefaultI10}, last = place(), time = 0;
-        const double from = last, asked = velocity;
-        ASSERT_EQ(host(abort), "");
-        for (int tick = 1; tick < 300; ++tick) {
-          platform::servo_ticks(1);
-          const double now = (place() - last) / kTickMs;
-          ASSERT_LE(now, velocity + 0.01) << tick;
-          if (now != 0) time = tick * kTickMs;
-          velocity = now;
-          last = place();
-        }
-        EXPECT_NEAR(time, asked / 1, 3.0);
-        EXPECT_NEAR(last - from, asked * asked / 2 / 1, asked * 2.0);
-        EXPECT_EQ(host("%"), "100") << "the hold is over";
-        EXPECT_FALSE(cs().held);
-      }
-}
-
-// It ends as it has begun, whatever comes of the time base meanwhile.
-TEST_F(HoldsAndAborts, ARampKeepsItsRate) {
-  for (const char* since : {"%10", "%0", "%200"}) {
-    SCOPED_TRACE(since);
-    platform::power_up();
-    fit({"1000X"});
-    ASSERT_EQ(host("I115=1 I5194=8388607"), "");
-    store({"TM2500 TA100 TS0 X100"});  // 40 counts a ms
-    begin();
-    ticks(900);
-    ASSERT_EQ(host("A"), "");
-    ticks(10);
-    const double from = place();
-    ASSERT_EQ(host(since), "");
-    ticks(32);
-    const double rest = place();
-    EXPECT_NEAR(rest - from, 30 * 30 / 2, 60.0) << "30 counts a ms are left";
-    ticks(100);
-    EXPECT_EQ(place(), rest);
-    ASSERT_EQ(host("%100 B1R"), "") << "it is over";
-  }
-}
-
 // A ramp does not wait for a jog that is planned and waits for its Ixx92.
 TEST_F(HoldsAndAborts, AnAbortComesBeforeAJogThatWaits) {
   ASSERT_EQ(host("#1J+"), "");
