@@ -18,6 +18,7 @@ enum { SERVO_CYCLES_TO_PLAN = 2, SERVO_CYCLES_GIVEN_UP = 1024 };
 struct beginning {
   uint32_t requests;
   int32_t rate; /* of the system, for motion.rate */
+  bool leaves;  /* it is a ramp off a program */
   struct jog_motion motion;
   int64_t begins;
   struct own_path_place place;
@@ -55,14 +56,11 @@ static void place_of_program(struct own_path_place* place, uint32_t motor, int64
 
 /* What slows the program down on its way to another time base, as a hold does, slows no ramp off it: that goes on at
  * the one that is commanded, at 100 % for none, from the velocity that is left by then. */
-static void set_rates(struct beginning* b, struct jog* j, const struct motor* m) {
-  const struct coordinate_system* s = &coordinate_systems[m->cs];
-  const bool by_program = m->path == PATH_SYSTEM || jog_now(j)->by_program;
+static int32_t rate_of(const struct beginning* b, const struct coordinate_system* s) {
+  if (!b->leaves) return 0;
   const int32_t target = s->held || s->time_base_source == 0 ? s->increment_command : time_base_external(s);
-  b->rate = s->increment;
-  b->motion.rate = 0;
-  if (b->motion.aim != AIM_RAMP || !by_program || s->increment == target) return;
-  b->motion.rate = target != 0 ? target : s->increment_full;
+  if (b->rate == target) return 0;
+  return target != 0 ? target : s->increment_full;
 }
 
 /* Servo task held off. */
@@ -78,7 +76,8 @@ static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
   jog_not_ready(motor);
   b->requests = j->requests;
   b->motion = j->request;
-  set_rates(b, j, m);
+  b->rate = coordinate_systems[m->cs].increment;
+  b->leaves = b->motion.aim == AIM_RAMP && (m->path == PATH_SYSTEM || jog_now(j)->by_program);
   b->begins = j->clock + (int64_t)j->rate * (int64_t)cycles;
   if (b->begins < j->request_begins) b->begins = j->request_begins;
   if (m->path == PATH_OWN) {
@@ -174,6 +173,7 @@ static bool plan(uint32_t motor) {
     hal_unmask(state);
     if (to_do != LOOK_PLAN) return false;
     slice_pause();
+    b.motion.rate = rate_of(&b, &coordinate_systems[motors[motor].cs]);
     struct own_path_state from = own_path_state(&b.place);
     if (b.motion.rate != 0) from.speed *= math_divide((double)b.rate, (double)b.motion.rate);
     struct own_path* path = &jogs[motor].paths[jogs[motor].current ^ 1u];
