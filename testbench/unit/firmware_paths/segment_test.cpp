@@ -304,6 +304,18 @@ TEST_F(Segments, AnArcBeyondAllRadiiIsStraight) {
   EXPECT_EQ(motors[1].trajectory, 700000LL * 3072);
 }
 
+// motion:7.2/4: half a turn is pi, and an angle below Isx97 pi has a turn more.
+TEST_F(Segments, AnArcBelowIsx97HasATurnMore) {
+  for (const auto& [least, halves] : {std::pair{".9", 1}, std::pair{"1.1", 3}}) {
+    platform::power_up();
+    fit({"1000X", "1000Y"});
+    ASSERT_EQ(host("I5113=5 I5190=1000 I5197=" + std::string(least)), "");
+    store({"F100 TA50 TS0", "CIRCLE1 X20 Y0 I10 J0"});
+    const double time = halves * kPi * 10 / 100 * 1000 + 50;
+    EXPECT_NEAR(run([](double) {}), std::ceil(time / 5) * 5 + 2 * 5, kTickMs) << least;
+  }
+}
+
 // On the way (2, 1) X has twice the radius along it that it has across, Y the other way round: both bend while the
 // larger is a tenth below 2^58, and none does when it is above.
 TEST_F(Segments, TheBoundOfTheRadiusHoldsInBothDirections) {
