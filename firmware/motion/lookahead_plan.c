@@ -204,17 +204,17 @@ static bool stop(struct look* l, struct lookahead_piece* piece) {
     return false;
   }
   const int32_t cap = look_is_limited(l) ? lookahead_at(&l->buffer, p.segment)->cap : RATE_FULL;
-  for (uint32_t i = STOP_PARTS; i <= PIECE_PARTS; i += STOP_PARTS) {
-    const uint32_t last = l->backward ? p.first - i : p.first + i;
+  const uint32_t left = l->backward ? p.first - p.last : p.last - p.first; /* a single segment is stopped anywhere */
+  for (uint32_t i = STOP_PARTS;; i += STOP_PARTS) {
+    const bool over = i >= left;
+    const uint32_t last = over ? p.last : l->backward ? p.first - i : p.first + i;
     load_next(l, &p, last);
     const int32_t least = slowest(l, cap);
-    const bool over = last == p.last;
     if (least != 0 && !over) continue;
     hand(l, p.segment, p.first, last, least >= 0 ? least : l->rate < cap ? l->rate : cap, piece);
     if (l->rate == 0) stand(l);
     return true;
   }
-  return false;
 }
 
 /* From rest to the next knot and to rest again, in two parts. */
@@ -316,6 +316,10 @@ bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece) {
 }
 
 /* Orders ----------------------------------------------------------------------------------------------------------- */
+
+bool lookahead_is_stored(uint32_t cs, const struct lookahead_piece* piece) {
+  return piece->segment >= look_oldest(&looks[cs]);
+}
 
 void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece) {
   struct look* l = &looks[cs];

@@ -85,11 +85,14 @@ void segment_ring_take_back(uint32_t cs) {
   uint32_t number = s->ring.executing;
   for (int64_t time = -s->ring.elapsed; number != s->ring.added && time < least; number++)
     time += piece_ring_at(&s->ring, number)->time;
-  const bool any = number != s->ring.added || sequences[cs].unhanded != 0;
-  piece_ring_take_back(&s->ring, number);
+  const uint32_t end = s->ring.added + sequences[cs].unhanded;
+  while (number != end && !lookahead_is_stored(cs, &looked[cs][number % PIECES]))
+    number++; /* it is executed as it is */
+  const uint32_t kept = (int32_t)(number - s->ring.added) > 0 ? number - s->ring.added : 0u;
+  if (kept == 0u) piece_ring_take_back(&s->ring, number);
   hal_unmask(state);
-  sequences[cs].unhanded = 0;
-  if (any) lookahead_take_back(cs, &looked[cs][number % PIECES]);
+  sequences[cs].unhanded = kept;
+  if (number != end) lookahead_take_back(cs, &looked[cs][number % PIECES]);
 }
 
 bool segment_ring_is_dry(uint32_t cs) {

@@ -354,6 +354,56 @@ TEST_F(Lookahead, OrdersAreLimitedThoughTheProgramIsNot) {
     }
 }
 
+// With short segments more of them are handed over than a small buffer keeps behind the front: those whose points have
+// been written over are executed, an order takes none of them back.
+TEST_F(Lookahead, OrdersTakeBackWhatIsStillStored) {
+  for (const int period : {1, 2})
+    for (const char* order : {"R", ">", "\\"})
+      for (const double when : {0.5, 40.0, 300.0}) {
+        SCOPED_TRACE(order + std::to_string(period) + " " + std::to_string(when));
+        platform::power_up();
+        fit({"1000X"});
+        ASSERT_EQ(host("I5113=" + std::to_string(period) + " I116=100 I117=0.5 I5120=40"), "");
+        ASSERT_EQ(host("&1DEFINE LOOKAHEAD 24,10"), "");
+        store({"F20 TA100 TS0", "X20"});
+        double end = 0, last = 0;
+        const auto found = extremes(1, &end, [&](double t) {
+          if (t >= when && t < when + kTickMs) { ASSERT_EQ(host(std::string("&1") + order), ""); }
+          if (t >= when + 200 && t < when + 200 + kTickMs) { ASSERT_EQ(host("&1>"), ""); }
+          if (std::abs(at(1) - last) > 20 * 1.005 * kTickMs && !HasFailure()) {
+            ADD_FAILURE() << "more than the 20 counts a ms of the program at " << t;
+            ASSERT_EQ(host("&1A"), "");
+          }
+          last = at(1);
+        });
+        EXPECT_LE(found[0].acceleration, 0.5 * 1.02);
+        EXPECT_EQ(motors[0].trajectory, 20000 * 3072LL);
+      }
+}
+
+// A single segment that begins between two knots is stopped between its quarters.
+TEST_F(Lookahead, AnOrderWithinASingleSegmentKeepsTheLimits) {
+  for (const char* single : {"I5121=14", "I5121=15"})
+    for (int n = 0; n < 16; ++n)
+      for (const char* order : {">", "<", "\\"}) {
+        SCOPED_TRACE(single + std::string(order) + std::to_string(n));
+        platform::power_up();
+        fit({"1000X"});
+        ASSERT_EQ(host("I5113=10 I116=100 I117=0.5 I5120=40 &1DEFINE LOOKAHEAD 200,10"), "");
+        store({"F30 TA200 TS0", "X20"});
+        double end = 0;
+        const auto at_ms = [](double t, double ms) { return t >= ms && t < ms + kTickMs; };
+        const auto found = extremes(1, &end, [&](double t) {
+          if (at_ms(t, 250 + 0.7 * n)) { ASSERT_EQ(host("&1\\"), ""); }
+          if (at_ms(t, 500)) { ASSERT_EQ(host(single), ""); }
+          if (at_ms(t, 501)) { ASSERT_EQ(host(std::string("&1") + order), ""); }
+          if (at_ms(t, 1200)) { ASSERT_EQ(host("&1>"), ""); }
+        });
+        EXPECT_LE(found[0].acceleration, 0.5 * 1.02);
+        EXPECT_EQ(motors[0].trajectory, 20000 * 3072LL);
+      }
+}
+
 // A path that is beyond the limits itself, v^2 / R = 1.6 counts a ms^2: what is lost and won along it is 0.5 of each
 // motor, and it comes back to the speed of the program.
 TEST_F(Lookahead, OrdersOnAPathBeyondTheLimits) {
