@@ -17,9 +17,11 @@ of the test suite showed of each of these tests, on each engine.
   --check      the same, and fails on the committed results as --results does. No run asks for that: its own results
                come behind it
   --write      writes docs/traceability.md
-  --results F  takes the results of a run from `ctest --output-junit F` into docs/test-results.json and writes the page;
-               fails when a test that names an ID has no result, and when a claimed ID is not passed on one of its
-               engines: one of the tests that name it has failed there or has no result, or none runs there
+  --results F...
+               takes the results of a run from `ctest --output-junit F`, and of what runs besides by night from
+               `unit_system --gtest_output=xml:F`, into docs/test-results.json and writes the page; fails when a test
+               that names an ID has no result, and when a claimed ID is not passed on one of its engines: one of the
+               tests that name it has failed there or has no result, or none runs there
 """
 
 import argparse
@@ -288,13 +290,25 @@ def cmake_names(root):
     return prefixes, suites
 
 
-def results_of(root, tests, junit):
+def cases_of(reports):
+    """(name as ctest has it, status) of each case in reports of ctest and of GoogleTest; there "run" says nothing."""
+    for report in reports:
+        for case in xml.etree.ElementTree.parse(report).getroot().iter("testcase"):
+            name, status = case.get("name"), case.get("status")
+            if "result" in case.attrib:
+                name = f"{case.get('classname')}.{name}"
+                if case.get("result") != "completed" or case.find("failure") is not None:
+                    status = "fail"
+            yield name, status
+
+
+def results_of(root, tests, reports):
     """{test: {engine: passed or failed}}, an engine counts as passed when every run of the test on it passed."""
     runs, entries = collections.defaultdict(list), {}
-    for case in xml.etree.ElementTree.parse(junit).getroot().iter("testcase"):
-        name, engine = plain_name(case.get("name"))
-        runs[name].append((engine, case.get("status")))
-        entries[case.get("name")] = (engine, case.get("status"))
+    for entry, status in cases_of(reports):
+        name, engine = plain_name(entry)
+        runs[name].append((engine, status))
+        entries[entry] = (engine, status)
     prefixes, suites = cmake_names(root)
     acceptance = root / "testbench/unit/app/bench_acceptance.py"
     cases = acceptance.read_text() if acceptance.exists() else ""
@@ -344,7 +358,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--write", action="store_true")
-    parser.add_argument("--results", type=pathlib.Path)
+    parser.add_argument("--results", type=pathlib.Path, nargs="+")
     parser.add_argument("--root", type=pathlib.Path, default=ROOT)
     options = parser.parse_args()
     root, problems = options.root, []

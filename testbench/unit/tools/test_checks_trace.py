@@ -85,6 +85,16 @@ class Traceability(Tree):
         self.assertIn("R passed<br>S failed", page)
         self.assertIn("Breq.FallsOnALine (failed: S)", page)
 
+    def test_a_report_of_googletest_adds_what_ctest_has_not_run(self):
+        self.results(("Breq.FallsOnALine/SystemC", "run"))
+        rtl = '<testcase name="FallsOnALine/Rtl" classname="Breq" status="run" result="{}">{}</testcase>'
+        for result, inside, status, says in (("completed", "", 0, "clean"),
+                                             ("completed", "<failure/>", 1, "BREQ-1 is claimed on R: failed"),
+                                             ("skipped", "", 1, "BREQ-1 is claimed on R: failed")):
+            self.write("g.xml", f"<testsuites><testsuite>{rtl.format(result, inside)}</testsuite></testsuites>")
+            self.expect(self.run_tool("traceability.py", "--results", self.root / "r.xml", self.root / "g.xml"), status,
+                        says)
+
     def test_a_test_without_a_result_fails_beside_one_that_passed(self):
         self.write("testbench/unit/b_test.cpp", TEST_FILE.replace("FallsOnALine", "IsGone"))
         done, page = self.results(("Breq.FallsOnALine/Rtl", "run"), ("Breq.FallsOnALine/Model", "run"))
