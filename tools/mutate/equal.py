@@ -2,7 +2,8 @@
 
 Both stand side by side with the same inputs; from the first reset on every output is compared at every step. Assumed
 is that clk_ref rises with every third edge of clk_pwm, and nothing else: what is proved holds under any neighbour.
-Memories and flip-flops without a reset start as zero. Who gets no proof within the limit is left to the other judges:
+Memories and flip-flops that have no reset in the module as it is start as zero; one that a mutant takes the reset from
+starts as anything. Who gets no proof within the limit is left to the other judges:
 equal for N steps only says nothing.
 """
 
@@ -25,13 +26,28 @@ always @($global_clock) begin
 end"""
 
 
+def without_reset(design):
+    """Names of the nets whose bits are all of flip-flops without a reset. `design`: of write_json."""
+    bits = {bit for cell in design["cells"].values() if cell["type"] in ("$dff", "$dffe")
+            for bit in cell["connections"]["Q"]}
+    return {name for name, net in design["netnames"].items() if bits.issuperset(net["bits"])}
+
+
+def starting_as_zero(text, names):
+    """RTLIL with an initial value of these nets."""
+    def wire(found):
+        width = int(found[1] or 1)
+        return f"  attribute \\init {width}'{'0' * width}\n{found[0]}" if found[2] in names else found[0]
+    return re.sub(r"^  wire (?:width (\d+) )?(?:\w+ \d+ )?(?:signed )?\\?(\S+)$", wire, text, flags=re.M)
+
+
 class Filter:
     """Of one module. `out`: a folder for its files."""
 
     def __init__(self, root, module, file, out, limit):
         self.root, self.module, self.file, self.out, self.limit = root, module, file, out, limit
         out.mkdir(parents=True, exist_ok=True)
-        self.ports, self.lock = None, threading.Lock()
+        self.ports, self.zero, self.lock = None, set(), threading.Lock()
 
     def yosys(self, folder, script):
         done = subprocess.run(["yosys", "-q", "-p", script], cwd=folder, stdin=subprocess.DEVNULL,
@@ -61,8 +77,9 @@ class Filter:
         with self.lock:
             if self.ports is None:
                 made = self.read(self.out, self.root / self.file, "gold")
-                text = (self.out / "gold.json").read_text() if made else ""
-                self.ports = json.loads(text)["modules"]["gold"]["ports"] if made else {}
+                design = json.loads((self.out / "gold.json").read_text())["modules"]["gold"] if made else {}
+                self.ports = design.get("ports", {})
+                self.zero = without_reset(design) if made else set()
             return bool(self.ports)
 
     def bench(self):
@@ -94,8 +111,10 @@ class Filter:
                 return False
             text, prepare = self.bench()
             (folder / "both.sv").write_text(text)
-            gold = self.out / "gold.il"
-            made = self.yosys(folder, f"read_rtlil {gold}; read_rtlil gate.il; read_verilog -sv -formal both.sv; "
+            for name, file in (("gold", self.out / "gold.il"), ("gate", folder / "gate.il")):
+                (folder / f"{name}_zero.il").write_text(starting_as_zero(file.read_text(), self.zero))
+            made = self.yosys(folder, "read_rtlil gold_zero.il; read_rtlil gate_zero.il; "
+                              "read_verilog -sv -formal both.sv; "
                               f"hierarchy -check -top both; proc; flatten; setundef -undriven -zero; {prepare}; "
                               "opt_clean; techmap; abc -g AND -fast; opt_clean; write_aiger -zinit both.aig")
             if not made:

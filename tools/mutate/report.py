@@ -40,8 +40,8 @@ one process it counts when that test fails alone, too (seen of all rows but the 
   comparison of the two is off: the tests have values of their own, the proof has its rules, and a model that sleeps
   until its next event shows what it shows when it is kept awake. This holds when both sides misread a rule alike.
 - **slip**: with lock-step and component tests on what was left: a mistake in one engine alone.
-- **equal**: proved, without a bound, to be the module it was made from; of C and C++, the same object code at -O2; out
-  of the count, another takes its place.
+- **equal**: proved, without a bound, to be the module it was made from, or with it the one around; of C and C++, the
+  same object code at -O2; out of the count, another takes its place.
 - **outside**: ended by its limit of processor time, a crash without a report that names its place, or no image can be
   built of it; out of the count too.
 - **at least**: the lower end of what the score of all mutants of the module may be, at 95 % (Wilson's interval, one

@@ -17,7 +17,7 @@ from mutant import mutants_of
 from runner import ALIVE, EQUAL, KILLED, BadBuild, Verdict
 
 FOLDER = pathlib.Path(__file__).parent
-FILTER_LIMIT, PROOF_LIMIT, ZERO_LIMIT, AGAIN_LIMIT = 20, 120, 600, 60  # s
+FILTER_LIMIT, PROOF_LIMIT, ZERO_LIMIT, AGAIN_LIMIT = 60, 120, 600, 60  # s
 
 
 @dataclasses.dataclass

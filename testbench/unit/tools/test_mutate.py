@@ -270,6 +270,22 @@ class Equal(unittest.TestCase):
             (root / "mutant.sv").write_bytes(self.COUNTER.replace(b"q_q >= 2'd2", b"q_q == 2'd2"))
             self.assertTrue(judge.equal(root / "mutant.sv", root / "same"))
 
+    @unittest.skipUnless(shutil.which("yosys-abc"), "Yosys is not installed")
+    def test_a_flip_flop_without_a_reset_starts_alike_in_both_and_one_that_lost_it_as_anything(self):
+        source = b"""module c (input wire logic clk_i, input wire logic rst_ni, input wire logic [3:0] size_i,
+                  output logic [3:0] size_o, output logic q_o);
+          always_ff @(posedge clk_i) if (!q_o) size_o <= size_i > 4'd9 ? 4'd9 : size_i;
+          always_ff @(posedge clk_i or negedge rst_ni) if (!rst_ni) q_o <= 1'b0; else q_o <= q_o;
+        endmodule"""
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "rtl").mkdir()
+            (root / "rtl/c.sv").write_bytes(source)
+            judge = equal.Filter(root, "c", "rtl/c.sv", root / "out", 30)
+            for number, (old, new, equals) in enumerate([(b"> 4'd9", b">= 4'd9", True), (b"9 :", b"8 :", False),
+                                                         (b"q_o <= 1'b0", b"", False)]):
+                (root / "mutant.sv").write_bytes(source.replace(old, new))
+                self.assertEqual(judge.equal(root / "mutant.sv", root / str(number)), equals, new)
 
     def test_only_the_two_clocks_are_made_by_the_bench(self):
         port = {"direction": "input", "bits": [1]}
