@@ -20,10 +20,8 @@ double rollover_target(uint32_t motor, double from, double to, bool negative) {
   const double turn = i_variable_read(I_MOTOR_BLOCK * (motor + 1u) + (uint32_t)IXX27_ROLLOVER);
   if (turn == 0.0) return to;
   if (turn > 0.0) return from + shortest(to - from, turn);
-  const double place = math_absolute(to);
-  slice_pause();
-  const double near = math_absolute(shortest(place - from, -turn));
+  const double near = math_absolute(shortest(to - from, -turn));
   if (near * BAND_UNITS < i_variable_read(i_motor(motor + 1u, IXX28_IN_POSITION_BAND))) return from;
   slice_pause();
-  return negative ? from - math_modulo(from - place, -turn) : from + math_modulo(place - from, -turn);
+  return negative ? from - math_modulo(from - to, -turn) : from + math_modulo(to - from, -turn);
 }

@@ -7,7 +7,8 @@
 #include <stdint.h>
 
 /* Counts. Where motor (0..31) has to go to from `from`, when its program says `to`: with Ixx27 above 0 the shortest
- * way, below 0 in the direction that the sign of `to` gives (`negative`, as -0 has none). Ixx27 = 0: to `to`. */
+ * way, below 0 in the direction that the sign of `to` gives (`negative`, as -0 has none): -90 degrees are 270, from
+ * above. Ixx27 = 0: to `to`. */
 double rollover_target(uint32_t motor, double from, double to, bool negative);
 
 #endif

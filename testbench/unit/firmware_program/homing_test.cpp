@@ -432,13 +432,15 @@ TEST_F(Homing, RolloverGoesTheShortestWayOrByTheSign) {
   EXPECT_EQ(target(-100, 36000 * 5 - 200), -200);
   ASSERT_EQ(host("I127=-36000"), "");
   EXPECT_EQ(target(0, 27000), 27000);
-  EXPECT_EQ(target(0, -27000), -9000);
+  EXPECT_EQ(target(0, -27000), -27000) << "-270 degrees are 90, from above";
+  EXPECT_EQ(target(0, -9000), -9000);
   EXPECT_EQ(target(35000, 1000), 37000);
-  EXPECT_EQ(target(35000, -1000), 1000);
+  EXPECT_EQ(target(35000, -35000), 1000);
+  EXPECT_EQ(target(35000, -1000), 35000) << "it is there";
   EXPECT_EQ(target(5000, 5009.5), 5000) << "within Ixx28";
-  EXPECT_EQ(target(5000, -5009.5), 5000);
+  EXPECT_EQ(target(5000, -30990.5), 5000);
   EXPECT_EQ(target(5000, 4980), 40980);
-  EXPECT_EQ(target(5000, -5020), -30980);
+  EXPECT_EQ(target(5000, -30980), -30980);
 }
 
 }  // namespace

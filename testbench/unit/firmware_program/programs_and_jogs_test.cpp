@@ -376,7 +376,7 @@ TEST_F(ProgramsAndJogs, BackwardHoldsAndForwardRuns) {
 TEST_F(ProgramsAndJogs, RotaryAxisOfANegativeScale) {
   fit({"-100A"});
   ASSERT_EQ(host("I127=-36000"), "");
-  store({"TM100 TA20 TS0 A270", "DWELL1 A-90"});
+  store({"TM100 TA20 TS0 A270", "DWELL1 A-120"});
   std::vector<std::int64_t> stops;
   bool dwelt = false;
   run([&](double) {
@@ -386,7 +386,7 @@ TEST_F(ProgramsAndJogs, RotaryAxisOfANegativeScale) {
   });
   ASSERT_EQ(stops.size(), 1u);
   EXPECT_EQ(stops[0], position(-27000));
-  EXPECT_EQ(motors[0].trajectory, position(-9000)) << "downwards to 90 degrees";
+  EXPECT_EQ(motors[0].trajectory, position(-24000)) << "-120 degrees are 240, from above";
   platform::power_up();
   fit({"-100A"});
   ASSERT_EQ(host("I127=36000"), "");
