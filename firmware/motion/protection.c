@@ -177,9 +177,12 @@ static bool is_at_input(uint32_t motor, bool up) {
   return up ? motor_flags_positive_limit(motor) : motor_flags_negative_limit(motor);
 }
 
+static bool has_passed(const struct guard* g, const struct view* view, bool up) {
+  return up ? view->actual >= g->positive_limit : view->actual <= g->negative_limit;
+}
+
 static bool is_at_software_limit(uint32_t motor, const struct view* view, bool up) {
-  const struct guard* g = &guards[motor];
-  return (up ? view->actual >= g->positive_limit : view->actual <= g->negative_limit) && !jog_is_homing(motor);
+  return has_passed(&guards[motor], view, up) && !jog_is_homing(motor);
 }
 
 static bool is_beyond_desired(uint32_t motor, const struct view* view, bool up) {
@@ -187,17 +190,18 @@ static bool is_beyond_desired(uint32_t motor, const struct view* view, bool up) 
   return (up ? view->commanded > g->positive_desired : view->commanded < g->negative_desired) && !jog_is_homing(motor);
 }
 
-/* Overtravel input and software limit. */
+/* Overtravel input and software limit. An input in front of a software limit that is on says that the position is
+ * wrong: it may be told to trip. */
 static void check_limit(uint32_t motor, const struct view* view, int direction) {
   const struct guard* g = &guards[motor];
   struct motor_findings* found = &motors[motor].found;
   const bool up = direction > 0;
   const bool input = is_at_input(motor, up), beyond = is_at_software_limit(motor, view, up);
   const bool has_software = up ? g->positive_limit != INT64_MAX : g->negative_limit != INT64_MIN;
-  const bool limited = input || beyond, kills = input && g->limit_kills && has_software && !beyond;
-  if (limited && goes(view, direction) && (kills || !motors[motor].status.aborting)) {
-    if (kills)
-      kill(motor);
+  const bool trips = input && g->limit_kills && has_software && !has_passed(g, view, up), limited = input || beyond;
+  if (limited && goes(view, direction) && (trips || !motors[motor].status.aborting)) {
+    if (trips)
+      trip(motor);
     else
       stop(motor);
     found->on_limit = true; /* an open loop that was closed has forgotten what was found */

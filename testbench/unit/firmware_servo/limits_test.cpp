@@ -170,6 +170,49 @@ TEST_F(MotionLimits, AnInputKillsInFrontOfTheSoftwareLimit) {
   }
 }
 
+// Others then go as behind a fault: bits 22 and 21.
+TEST_F(MotionLimits, AnInputThatKillsTripsOthersAsIxx24Says) {
+  const struct {
+    const char* mode;
+    bool second, fifth;
+  } cases[] = {{"$800101", true, true}, {"$A00101", true, false}, {"$C00101", false, false}};
+  for (const auto& one : cases) {
+    flags(1, 0);
+    counts(1, 0);
+    servo();
+    c_.line(std::string("I113=100000 I124=") + one.mode);
+    close_all();
+    c_.line("#1J+");
+    follow(100);
+    flags(1, kPositive);
+    follow(3);
+    EXPECT_EQ(loop(1), LOOP_KILLED) << one.mode;
+    EXPECT_EQ(loop(2) == LOOP_KILLED, one.second) << one.mode;
+    EXPECT_EQ(loop(5) == LOOP_KILLED, one.fifth) << one.mode;
+    EXPECT_TRUE(status2(1, 11)) << "stopped on a limit";
+    EXPECT_FALSE(status2(1, 2) || status2(1, 3)) << "neither a following error nor a fault";
+  }
+}
+
+// A search for home that has passed the software limit ends at the input by a ramp, one that has not is a runaway.
+TEST_F(MotionLimits, AnInputKillsASearchInFrontOfTheSoftwareLimitOnly) {
+  for (const bool passed : {false, true}) {
+    flags(1, 0);
+    counts(1, 0);
+    servo();
+    c_.line(std::string("I124=$C00101 I123=10 I113=") + (passed ? "100" : "100000"));
+    c_.line("#1HMZ HM");
+    follow(200);
+    ASSERT_GT(at(1), 500);
+    flags(1, kPositive);
+    follow(3);
+    EXPECT_EQ(loop(1), passed ? LOOP_CLOSED : LOOP_KILLED);
+    EXPECT_TRUE(status2(1, 11));
+    follow(100);
+    motor_kill(0);
+  }
+}
+
 // The ramp of an abort is no excuse.
 TEST_F(MotionLimits, AnInputKillsWhileAnAbortIsUnderWay) {
   c_.line("I124=$800101 I113=100000");
@@ -184,7 +227,6 @@ TEST_F(MotionLimits, AnInputKillsWhileAnAbortIsUnderWay) {
   EXPECT_EQ(loop(1), LOOP_KILLED);
 }
 
-// An open loop that comes to a limit is closed; O is refused as long as it stands there.
 // What comes to rest already is left alone, and was not stopped by the limit.
 TEST_F(MotionLimits, ARampThatIsUnderWayIsLeftAlone) {
   c_.line("#1J+");
@@ -203,6 +245,7 @@ TEST_F(MotionLimits, ARampThatIsUnderWayIsLeftAlone) {
   EXPECT_EQ(loop(1), LOOP_CLOSED);
 }
 
+// An open loop that comes to a limit is closed; O is refused as long as it stands there.
 TEST_F(MotionLimits, AnOpenLoopIsClosed) {
   c_.line("I113=100");
   ASSERT_EQ(c_.line("#1O10"), "");
