@@ -277,9 +277,12 @@ static void check_in_position(uint32_t motor, const struct view* view) {
   motors[motor].found.in_position = g->scans >= g->scans_wanted;
 }
 
+/* The warning of a motor that its error has tripped stands with that. */
 static void not_closed(uint32_t motor) {
+  struct motor_findings* found = &motors[motor].found;
   guards[motor].scans = 0;
-  motors[motor].found.in_position = motors[motor].found.warning_error = false;
+  found->in_position = false;
+  if (!found->fatal_error) found->warning_error = false;
 }
 
 static void check(uint32_t motor) {

@@ -111,9 +111,12 @@ TEST_F(Protection, FollowingErrorWarnsAndTrips) {
   EXPECT_EQ(loop(1), LOOP_KILLED);
   EXPECT_FALSE(enabled(1));
   EXPECT_TRUE(status2(1, 2));
+  EXPECT_TRUE(status2(1, 1)) << "the warning stays";
+  EXPECT_EQ(std::stoul(c_.line("&1??").substr(6, 6), nullptr, 16) >> 18 & 3u, 3u) << "of its system too";
+  EXPECT_FALSE(status2(2, 1)) << "not of one that has only gone with it";
   c_.line("I111=0");
   ASSERT_TRUE(motor_close(0));
-  EXPECT_FALSE(status2(1, 2)) << "closed again";
+  EXPECT_FALSE(status2(1, 2) || status2(1, 1)) << "closed again";
   counts(1, 9999);
   servo();
   protection_pass();
@@ -316,7 +319,8 @@ TEST_F(Protection, SignalsOfTheSelectedSystem) {
   EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_F1ER);
   c_.line("I211=160");
   protection_pass();
-  EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_EROR);
+  EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR),
+            HAL_SIGNAL_EROR | HAL_SIGNAL_F1ER);
   c_.line("I200=0");
   protection_pass();
   EXPECT_EQ(fake_hal_signals() & HAL_SIGNAL_EROR, 0u) << "no more activated: nobody is to wait for it";

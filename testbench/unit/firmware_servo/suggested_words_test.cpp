@@ -163,7 +163,7 @@ TEST_F(SuggestedWords, OfFaults) {
   EXPECT_EQ(c_.line("M5188 M5189 M5190 M142"), "1|0|0|0");
   counts(2, 101);
   servo(3);
-  EXPECT_EQ(c_.line("M5188 M5189 M5190"), "0|1|0");
+  EXPECT_EQ(c_.line("M5188 M5189 M5190"), "1|1|0");
   EXPECT_EQ(c_.line("M142 M143"), "0|0") << "that of motor 2";
   counts(2, 0);
   servo(3);
