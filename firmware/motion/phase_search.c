@@ -194,9 +194,14 @@ void phasing_pass(void) {
   }
 }
 
+/* A sensor that cannot be read leaves no reference, whatever there was. */
 static bool begin_absolute(uint32_t motor) {
   int32_t position;
-  if (!phase_absolute_read(motor, &position)) return false;
+  if (!phase_absolute_read(motor, &position)) {
+    motor_kill(motor);
+    phasing_set_missing(motor, true);
+    return false;
+  }
   set_position(motor, position);
   phasing_set_missing(motor, false);
   return motor_close(motor);

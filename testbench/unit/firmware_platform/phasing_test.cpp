@@ -139,6 +139,17 @@ TEST_F(Halls, ImpossibleStatesAreRefused) {
   }
 }
 
+// `$` begins without a reference, and what does not end with one leaves the motor killed.
+TEST_F(Halls, AnImpossibleStateTakesTheReferenceAway) {
+  EXPECT_NEAR(degrees("$800000", 3), 30, 0.1);
+  ASSERT_EQ(motors[0].loop, LOOP_CLOSED);
+  set_x(0x10F1, 7 << 20);
+  EXPECT_EQ(c_.line("#1$"), "ERR018");
+  EXPECT_TRUE(phasing_is_missing(0));
+  EXPECT_EQ(motors[0].loop, LOOP_KILLED);
+  EXPECT_EQ(c_.line("#1J/"), "ERR018");
+}
+
 TEST_F(Halls, AreReadAtPowerOnIfIxx80SaysSo) {
   for (const int mode : {0, 1, 5}) {
     set("I171=3600 I181=$78000 I191=$800000 I124=$120001 I180=" + std::to_string(mode) + " SAVE");
