@@ -29,6 +29,7 @@
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/kinematics.h"
 #include "firmware/motion/live_words.h"
+#include "firmware/motion/motor.h"
 #include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
@@ -68,9 +69,15 @@ static void buffer_request_changed(uint32_t instance) {
   buffer_request_evaluate();
 }
 
-/* What servo and phase task calculate with, in integers. Motor 1..32. */
-static void motor_changed(uint32_t motor) {
+/* What servo and phase task calculate with, in integers. Motor 1..32. Without a phase reference no loop stays closed.
+ */
+static void phase_changed(uint32_t motor) {
   phase_task_motor_changed(motor);
+  if (motors[motor - 1u].loop == LOOP_CLOSED && phasing_is_missing(motor - 1u)) protection_kill(motor - 1u);
+}
+
+static void motor_changed(uint32_t motor) {
+  phase_changed(motor);
   motor_variables_changed(motor);
 }
 
@@ -92,12 +99,12 @@ const i_effect_t i_effects[I_FIELD_COUNT] = {
     [I_FIELD_MOTOR_FEEDBACK] = motor_variables_changed,
     [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
     [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,
-    [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
+    [I_FIELD_MOTOR_PHASE] = phase_changed,
     [I_FIELD_VELOCITY_SAMPLES] = average_velocity_changed,
     [I_FIELD_COMPENSATION] = compensation_tables_changed,
     [I_FIELD_CONVERSION] = conversion_table_changed,
     [I_FIELD_MOTOR_SERVO] = motor_variables_changed,
-    [I_FIELD_MOTOR_CURRENT] = phase_task_motor_changed,
+    [I_FIELD_MOTOR_CURRENT] = phase_changed,
     [I_FIELD_MOTOR_BOTH] = motor_changed,
 };
 

@@ -9,7 +9,6 @@
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_flags.h"
 #include "firmware/motion/motor_output.h"
-#include "firmware/motion/motor_state.h"
 #include "firmware/motion/position_loop.h"
 #include "firmware/motion/protection.h"
 #include "firmware/motion/servo_words.h"
@@ -34,7 +33,7 @@ static void take_activated(uint32_t motor) {
     motors_active |= bit;
     hal_unmask(state);
   } else if ((motors_active & bit) != 0u) {
-    motor_kill(motor - 1u);
+    protection_kill(motor - 1u);
     motors_active &= ~bit;
   }
 }

@@ -35,6 +35,7 @@ enum { FIRST_TURN = 0x11111111 };     /* motors that are looked at in the first 
 static uint32_t turn, urgent_watched; /* S: which it is; bit n: what is urgent about motor n is looked for */
 static volatile bool asked;           /* S sets, R clears: a pass does not wait for its turn */
 
+static volatile uint32_t gone;   /* bit n: a variable has killed motor n, its program is to end. V sets, R clears */
 static volatile bool foreground; /* I13, as the last pass has seen it */
 static volatile bool stands;     /* B */
 static uint32_t shown;           /* B: signals that are on */
@@ -43,7 +44,7 @@ void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
   foreground = stands = asked = false;
-  protection_watched = protection_always_watched = turn = urgent_watched = 0;
+  protection_watched = protection_always_watched = turn = urgent_watched = gone = 0;
   shown = 0;
 }
 
@@ -146,6 +147,25 @@ static void trip(uint32_t motor) {
   }
   for (uint32_t cs = 0; systems != 0u; ++cs, systems >>= 1)
     if ((systems & 1u) != 0u) protection_hooks.abort(cs);
+}
+
+/* The writer of a variable may be the program itself, in the middle of a line. */
+void protection_kill(uint32_t motor) {
+  if (motors[motor].loop == LOOP_KILLED) return;
+  motor_kill(motor);
+  const uint32_t state = hal_mask_real_time();
+  gone |= 1u << motor;
+  hal_unmask(state);
+}
+
+static void end_programs_of_gone(void) {
+  const uint32_t of = gone;
+  gone = 0;
+  for (uint32_t motor = 0, left = of; left != 0u; ++motor, left >>= 1) {
+    const struct axis_definition* d = &axis_definitions[motor];
+    if ((left & 1u) == 0u || !d->assigned) continue;
+    if (coordinate_systems[d->cs].running || coordinate_systems[d->cs].active) protection_hooks.abort(d->cs);
+  }
 }
 
 /* A program moves it: on the path, or by itself (RAPID, HOME). */
@@ -338,6 +358,7 @@ void protection_stand(bool still) { stands = still; }
 void protection_pass(void) {
   if (stands) return;
   asked = false;
+  if (gone != 0u) end_programs_of_gone();
   foreground = i_variable_foreground_in_position();
   protection_always_watched = foreground ? UINT32_MAX : 0u;
   uint32_t left = motors_active;

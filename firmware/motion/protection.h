@@ -19,8 +19,10 @@ extern const struct protection_hooks protection_hooks;
 void protection_initialize(void);
 void protection_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
 void protection_pass(void);                    /* real-time task: all motors */
-bool protection_is_asked_for(void);            /* real-time task: the servo task has seen what does not wait */
-void protection_stand(bool still);             /* background: nothing is looked at (SAVE) */
+void protection_kill(
+    uint32_t motor);                /* 0..31, by a variable of it: the program of its system ends with the next pass */
+bool protection_is_asked_for(void); /* real-time task: the servo task has seen what does not wait */
+void protection_stand(bool still);  /* background: nothing is looked at (SAVE) */
 /* As found, and not jogged since: who asks at once behind a command would take it for done. */
 bool protection_in_position(uint32_t motor);  /* 0..31 */
 bool protection_all_in_position(uint32_t cs); /* those of a coordinate system; false: it has none */

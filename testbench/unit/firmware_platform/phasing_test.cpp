@@ -35,6 +35,22 @@ TEST_F(Phasing, IsMissingForSynchronousMotors) {
   EXPECT_TRUE(phasing_is_missing(2));
 }
 
+// A motor that becomes one whose reference is missing is not controlled any more.
+TEST_F(Phasing, ALoopIsOpenedThatNeedsOne) {
+  set("I200=1 I224=$120001");
+  ASSERT_TRUE(motor_close(1));
+  set("I201=2 I270=4");
+  EXPECT_EQ(motors[1].loop, LOOP_CLOSED) << "not commutated";
+  set("I278=0.001 I201=1");
+  EXPECT_EQ(motors[1].loop, LOOP_CLOSED) << "an induction motor";
+  set("I278=0");
+  EXPECT_EQ(motors[1].loop, LOOP_KILLED);
+  set("I201=0");
+  ASSERT_TRUE(motor_close(1));
+  set("I201=1");
+  EXPECT_EQ(motors[1].loop, LOOP_KILLED);
+}
+
 TEST_F(Phasing, IsMissingAfterAReset) {
   phasing_set_missing(0, false);
   set("SAVE");

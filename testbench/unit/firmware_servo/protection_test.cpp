@@ -173,6 +173,30 @@ TEST_F(Protection, ProgramsOfKilledMotorsAreAborted) {
 }
 
 // motion:6.5, rule 2: with I13 = 1 at each servo interrupt, without passes.
+// So does one of a motor that is no longer activated, or has no phase reference any more; another's jog goes on.
+TEST_F(Protection, ProgramsOfMotorsThatAVariableKillsEnd) {
+  for (const char* variable : {"I200=0", "I201=1"}) {
+    c_.line("I200=1 I201=0");
+    run({"INC TM1000 TA20 TS0", "X2000 Y1000", "X2000 Y1000"});
+    follow(50);
+    ASSERT_TRUE(runs());
+    c_.line(variable);
+    EXPECT_EQ(loop(2), LOOP_KILLED) << variable;
+    follow(3);
+    EXPECT_FALSE(runs()) << variable;
+    EXPECT_EQ(loop(1), LOOP_CLOSED) << variable;
+    follow(200);
+    EXPECT_FALSE(status1(1, 12)) << variable;
+  }
+  c_.line("I201=0 I200=1 #1J+");
+  follow(30);
+  ASSERT_TRUE(motor_close(1));
+  c_.line("I200=0");
+  follow(10);
+  EXPECT_FALSE(status1(1, 12)) << "no program, no abort";
+  EXPECT_FALSE(status1(1, 13));
+}
+
 TEST_F(Protection, ForegroundInPosition) {
   c_.line("I128=160 I188=255");
   ASSERT_TRUE(motor_close(0));
