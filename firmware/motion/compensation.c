@@ -35,6 +35,7 @@ static struct set {
 } sets[2];
 static const struct set* present; /* the servo task's */
 static struct rework rework;
+static int64_t given[MOTORS]; /* S: what a motor's position has of its tables */
 
 uint32_t compensation_of_position, compensation_of_torque; /* the first: COMP */
 
@@ -61,22 +62,33 @@ static void take(struct set* set, enum region_kind kind, uint32_t motor) {
   if (kind == REGION_TCOMP) set->of_torque |= 1u << table->target;
 }
 
+/* That of the others is made anew. */
+static void leave(uint32_t motor) {
+  const uint32_t state = hal_mask_servo();
+  compensation_of_position &= ~(1u << motor);
+  motors[motor].compensation += given[motor];
+  given[motor] = 0;
+  hal_unmask(state);
+}
+
 static void change(void) {
   struct set* set = present == &sets[0] ? &sets[1] : &sets[0];
   __builtin_memset(set->first, NONE, sizeof set->first);
   set->of_position = set->of_torque = 0;
   for (uint32_t kind = 0; kind < COMPENSATION_KINDS; ++kind)
     for (uint32_t motor = 0; motor < MOTORS; ++motor) take(set, (enum region_kind)kind, motor);
+  for (uint32_t left = compensation_of_position & ~set->of_position; left != 0u; left &= left - 1u)
+    leave((uint32_t)__builtin_ctz(left));
   const uint32_t state = hal_mask_servo();
   present = set;
   compensation_of_position = set->of_position;
   compensation_of_torque = set->of_torque;
-  for (uint32_t motor = 0; motor < MOTORS; ++motor) motors[motor].compensation = 0; /* made anew, if there is one */
   hal_unmask(state);
   status_show(STATUS_COMPENSATION, i_integer(I51_COMPENSATION_TABLES) != 0);
 }
 
 void compensation_initialize(void) {
+  __builtin_memset(given, 0, sizeof given);
   rework = (struct rework){.under_way = false};
   change();
 }
@@ -109,7 +121,11 @@ static int64_t sum(enum region_kind kind, uint32_t motor) {
   return all;
 }
 
-int64_t compensation_position(uint32_t motor) { return sum(REGION_COMP, motor); }
+int64_t compensation_position(uint32_t motor) {
+  given[motor] = sum(REGION_COMP, motor);
+  return given[motor];
+}
+
 int64_t compensation_backlash(uint32_t motor) { return sum(REGION_BLCOMP, motor); }
 
 /* With the sign of the output: it makes it larger or smaller. */

@@ -81,11 +81,13 @@ void desired_position_motor_changed(uint32_t motor) {
   hal_unmask(state);
 }
 
+/* A table goes with the motor, wherever that is turned. */
 void desired_position_take_actual(uint32_t motor) {
   struct motor* m = &motors[motor];
   struct path* p = &paths[motor];
   FIXED_IN_REGISTER(m);
   FIXED_IN_REGISTER(p);
+  if ((compensation_of_position >> motor & 1u) != 0u) m->compensation = -compensation_position(motor) - p->taken_up;
   const int64_t actual = m->actual, shown = actual + m->compensation;
   m->commanded = actual;
   m->desired_step = 0;
@@ -175,8 +177,9 @@ void desired_position_with_extras(uint32_t motor) {
   struct motor* m = &motors[motor];
   struct path* p = &paths[motor];
   if (p->follows) follow(m, p);
-  m->compensation = 0;
-  if ((compensation_of_position >> motor & 1u) != 0u) m->compensation = -compensation_position(motor);
+  const bool by_tables = (compensation_of_position >> motor & 1u) != 0u;
+  if (by_tables || p->backlash_rate != 0) /* else it is a user's */
+    m->compensation = by_tables ? -compensation_position(motor) : 0;
   if (p->backlash_rate != 0) m->compensation -= backlash(motor, m, p);
   int64_t wanted = m->trajectory + m->master - m->compensation;
   if (p->share != 0u) wanted = filtered(m, p, wanted);

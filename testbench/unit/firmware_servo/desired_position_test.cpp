@@ -270,6 +270,54 @@ TEST_F(DesiredPosition, ALoopIsClosedWhereTheMotorIsInSpiteOfTables) {
   EXPECT_EQ(motors[0].desired_step, 0);
 }
 
+// So it is behind a way that the motor was turned while it was killed, which its table sees, and P with it.
+TEST_F(DesiredPosition, ATableSeesAMotorThatIsTurnedByHand) {
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1");
+  close();
+  c_.servo(2);
+  motor_kill(0);
+  *hal_x(0x10F0) = 250 * 32;
+  c_.servo(2);
+  EXPECT_EQ(c_.line("#1P"), "240") << "10 counts of it are the screw's";
+  ASSERT_TRUE(motor_close(0));
+  for (int n = 0; n < 3; ++n) {
+    EXPECT_EQ(motors[0].commanded, 250 * kCount);
+    c_.servo(1);
+    EXPECT_EQ(motors[0].desired_step, 0);
+  }
+  EXPECT_EQ(c_.line("#1P"), "240");
+}
+
+// Tables that are made anew leave the backlash that is taken up, of a killed motor too.
+TEST_F(DesiredPosition, OtherTablesLeaveTheBacklashOfAKilledMotor) {
+  c_.line("I185=8388607 I186=80 I187=0");
+  close();
+  EXPECT_EQ(desired(0), 0);
+  desired_position_pass();
+  EXPECT_EQ(desired(-1), -6) << "downwards";
+  *hal_x(0x10F0) = static_cast<std::uint32_t>(-6 * 32) & HAL_WORD_MASK;
+  c_.servo(1);
+  motor_kill(0);
+  c_.line("I208=48");
+  c_.servo(1);
+  EXPECT_EQ(c_.line("#1P"), "-1");
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 1,1000"), "");
+  c_.line("16 I51=1");
+  c_.servo(1);
+  ASSERT_EQ(c_.line("#1 DELETE COMP"), "");
+  c_.servo(1);
+  EXPECT_EQ(c_.line("#1P"), "-1") << "its own table is gone";
+  ASSERT_TRUE(motor_close(0));
+  c_.servo(1);
+  EXPECT_EQ(motors[0].commanded, -6 * kCount);
+  motor_kill(0);
+  c_.line("I208=96 I185=0");
+  c_.servo(1);
+  EXPECT_EQ(c_.line("#1P"), "-6") << "it is off";
+}
+
 // motion:1.4/4: three tables of one target.
 TEST_F(DesiredPosition, TablesOfOneTargetAddUp) {
   ASSERT_EQ(c_.line("#3 DEFINE COMP 2,#3,#1,1000"), "");
@@ -314,6 +362,20 @@ TEST_F(DesiredPosition, ACompensationThatIsWrittenIsTakenOff) {
   *hal_x(0x10F0) = 2 * 32;
   position_loop_servo(0);
   EXPECT_EQ(c_.line("#1P"), "5");
+}
+
+// Whatever else makes its position: what is not of tables and backlash stays.
+TEST_F(DesiredPosition, ACompensationThatIsWrittenStays) {
+  close();
+  c_.line("WY$90," + std::to_string(3 * kCount));
+  c_.line("I105=$10F5 I106=1 I140=0.000001");
+  EXPECT_NEAR(desired(5), 2, 0.001) << "a master, a filter";
+  ASSERT_EQ(c_.line("#2 DEFINE COMP 4,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1 I208=48");
+  EXPECT_NEAR(desired(5), 2, 0.001) << "another motor's tables";
+  c_.line("#2 DELETE COMP");
+  EXPECT_NEAR(desired(5), 2, 0.001);
 }
 
 TEST_F(DesiredPosition, TorqueTables) {
