@@ -117,7 +117,8 @@ static void follow(struct motor* m, struct path* p) {
   const uint32_t reading = *p->master;
   const int64_t step = (int64_t)hal_signed(reading - p->master_reading) * p->master_scale;
   p->master_reading = reading;
-  if ((step > 0 && m->found.positive_limit) || (step < 0 && m->found.negative_limit)) return;
+  if (step > 0 && (m->found.positive_limit || m->found.positive_desired)) return;
+  if (step < 0 && (m->found.negative_limit || m->found.negative_desired)) return;
   m->master += step;
 }
 

@@ -377,6 +377,38 @@ TEST_F(MotionLimits, TheDesiredPositionHasLimits) {
   EXPECT_EQ(at(1), -2000);
 }
 
+// A master leads no motor beyond it either, and back from where it has left the motor.
+TEST_F(MotionLimits, TheDesiredPositionFollowsNoFurtherThanItsLimit) {
+  const auto master = [](int counts) { *hal_x(0x10F6) = static_cast<std::uint32_t>(counts * 32) & HAL_WORD_MASK; };
+  master(0);
+  c_.line("I105=$10F6 I107=96 I106=1 I124=$808001 I113=1100 I114=-1100 I141=100");
+  ASSERT_TRUE(motor_close(0));
+  for (const int side : {1, -1}) {
+    const double begins = at(1);
+    int way = 0;
+    for (int n = 0; n < 300; ++n) {
+      master(way += side * 10);
+      follow(1);
+    }
+    EXPECT_GE(side * at(1), 1000);
+    EXPECT_LE(side * at(1), 1000 + 10 * 5) << "seen within five interrupts";
+    EXPECT_TRUE(status2(1, 12));
+    EXPECT_FALSE(status1(1, side > 0 ? 21 : 22)) << "the actual position has not come to its limit";
+    const double stands = at(1);
+    master(way -= side * 10);
+    follow(3);
+    EXPECT_EQ(at(1), stands - side * 10) << "out of it";
+    EXPECT_NE(begins, stands);
+    for (int n = 0; n < 90; ++n) {
+      master(way -= side * 10);
+      follow(1);
+    }
+    EXPECT_FALSE(status2(1, 12));
+    master(0);
+    c_.line("I106=0 I106=1");
+  }
+}
+
 TEST_F(MotionLimits, TheDesiredPositionOfAProgramHasLimits) {
   c_.line("I224=$808001 I213=600");
   run({"TM1000 TA20 TS0 X20000 Y20000", "P1=1"});
