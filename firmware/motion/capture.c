@@ -19,8 +19,10 @@ enum {
   FINE_COUNT_BITS = 10
 };
 
-static volatile uint32_t* word(bool x, uint32_t address) {
-  if (!word_exists(x, address)) return 0;
+/* Of Ixx25 = 0 there is none. */
+static volatile uint32_t* word(bool x, uint32_t flags, uint32_t which) {
+  const uint32_t address = flags + which;
+  if (flags == 0u || !word_exists(x, address)) return 0;
   return x ? hal_x(address) : hal_y(address);
 }
 
@@ -29,9 +31,9 @@ struct capture capture_make(uint32_t motor) {
   const uint32_t mode = (uint32_t)i_integer(i_motor(motor + 1u, IXX97_CAPTURE_MODE));
   const uint32_t flag_mode = (uint32_t)i_integer(i_motor(motor + 1u, IXX24_FLAG_MODE));
   struct capture c = {.on_error = (mode & MODE_ERROR) != 0u, .in_software = mode != 0u};
-  c.status = word(true, flags);
-  c.position = word(true, flags + POSITION_REGISTER);
-  c.fraction = word(false, flags);
+  c.status = word(true, flags, 0);
+  c.position = word(true, flags, POSITION_REGISTER);
+  c.fraction = word(false, flags, 0);
   c.with_fraction = (flag_mode & FLAG_FRACTION) != 0u;
   c.count_bits = (flag_mode & FLAG_FINE_COUNTS) != 0u ? FINE_COUNT_BITS : COUNT_BITS;
   return c;

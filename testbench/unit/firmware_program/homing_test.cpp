@@ -291,6 +291,24 @@ TEST_F(Homing, ATriggerWhileSomethingElseIsAskedForMakesHomeOnly) {
   }
 }
 
+// Ixx25 = 0 names no flags: X:$0, which counts servo interrupts, is none either. An error is a trigger all the same.
+TEST_F(Homing, WithoutFlagsNoTriggerComes) {
+  ASSERT_EQ(host("I125=0"), "");
+  begin(0);
+  ASSERT_EQ(host("#1I123=20 HM"), "");
+  while ((*hal_x(0) & kCaptureFlag) == 0) tick();
+  run(10);
+  EXPECT_TRUE(jog_is_homing(0));
+  EXPECT_FALSE(motors[0].status.home_complete);
+  ASSERT_EQ(host("J/"), "");
+  settle();
+  ASSERT_EQ(host("I197=3 HM"), "");
+  run(50);
+  motors[0].found.warning_error = true;
+  settle();
+  EXPECT_TRUE(motors[0].status.home_complete);
+}
+
 TEST_F(Homing, JogUntilATriggerGoesOnFromThere) {
   begin(500);
   const double zero = zero_;
