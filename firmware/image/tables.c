@@ -27,6 +27,7 @@
 #include "firmware/motion/average_velocity.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/conversion_table.h"
+#include "firmware/motion/jog.h"
 #include "firmware/motion/kinematics.h"
 #include "firmware/motion/live_words.h"
 #include "firmware/motion/motor.h"
@@ -62,6 +63,7 @@ const struct word_hooks word_hooks = {
 enum run_time_error (*const kinematics_execute)(uint32_t cs, enum fixed_kind kind) = kinematic_program_execute;
 
 const struct protection_hooks protection_hooks = {.abort = run_abort};
+const struct jog_hooks jog_hooks = {.is_in_limit = protection_is_in_limit, .refuse = protection_refuse};
 
 static void buffer_request_changed(uint32_t instance) {
   (void)instance;

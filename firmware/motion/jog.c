@@ -49,14 +49,22 @@ static bool stops_already(uint32_t motor) {
   return waits ? j->request.aim == AIM_RAMP : motors[motor].path == PATH_OWN && jog_now(j)->aim == AIM_RAMP;
 }
 
-/* Further into a limit that the motor stands in: the command is taken and moves nothing. */
 static bool goes_into_limit(uint32_t motor, const struct jog_motion* request) {
-  const struct motor* m = &motors[motor];
-  if (request->homes || (request->aim != AIM_SPEED && request->aim != AIM_TARGET)) return false;
-  const bool up = request->aim == AIM_SPEED ? request->speed > 0.0 : request->target > m->trajectory;
-  const bool down = request->aim == AIM_SPEED ? request->speed < 0.0 : request->target < m->trajectory;
-  return (up && (m->found.positive_limit || m->found.positive_desired)) ||
-         (down && (m->found.negative_limit || m->found.negative_desired));
+  if (request->aim != AIM_SPEED && request->aim != AIM_TARGET) return false;
+  const int64_t at = motors[motor].trajectory;
+  const bool up = request->aim == AIM_SPEED ? request->speed > 0.0 : request->target > at;
+  const bool down = request->aim == AIM_SPEED ? request->speed < 0.0 : request->target < at;
+  return (up || down) && jog_hooks.is_in_limit(motor, up, request->homes);
+}
+
+/* Further into a limit that the motor stands in: a command is taken and moves nothing, a program ends. */
+static void post_out_of_limit(uint32_t motor, const struct jog_motion* request) {
+  if (!goes_into_limit(motor, request)) {
+    jog_post(motor, request);
+    return;
+  }
+  if (request->homes) motors[motor].status.home_complete = false;
+  if (request->by_program) jog_hooks.refuse(motor);
 }
 
 static bool ask(uint32_t motor, const struct jog_motion* request) {
@@ -67,7 +75,7 @@ static bool ask(uint32_t motor, const struct jog_motion* request) {
     jogs[motor].delay = request->aim == AIM_RAMP ? 0 : delay;
     if (!request->by_program && !request->homes && request->aim != AIM_RAMP) leave_position(motor);
     if (request->aim != AIM_RAMP) {
-      if (!goes_into_limit(motor, request)) jog_post(motor, request);
+      post_out_of_limit(motor, request);
     } else if (!stops_already(motor)) {
       jog_post(motor, request);
       hal_request_real_time(); /* what stops a motor does not wait for its turn */

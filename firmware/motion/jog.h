@@ -10,6 +10,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* What requests ask of those who watch motors; image/tables.c fills it in. Servo task held off. */
+struct jog_hooks {
+  bool (*is_in_limit)(uint32_t motor, bool up, bool homes); /* it stands there: motion/protection.h */
+  void (*refuse)(uint32_t motor);                           /* a program asks for more of it */
+};
+extern const struct jog_hooks jog_hooks;
+
 void jog_initialize(void); /* start-up, before interrupts: nothing moves, no position before a jog but 0 */
 
 /* Requests. False: the loop is not closed, nothing has been asked for. */

@@ -35,16 +35,17 @@ enum { FIRST_TURN = 0x11111111 };     /* motors that are looked at in the first 
 static uint32_t turn, urgent_watched; /* S: which it is; bit n: what is urgent about motor n is looked for */
 static volatile bool asked;           /* S sets, R clears: a pass does not wait for its turn */
 
-static volatile uint32_t gone;   /* bit n: a variable has killed motor n, its program is to end. V sets, R clears */
-static volatile bool foreground; /* I13, as the last pass has seen it */
-static volatile bool stands;     /* B */
-static uint32_t shown;           /* B: signals that are on */
+static volatile uint32_t gone;    /* bit n: a variable has killed motor n, its program is to end. V sets, R clears */
+static volatile uint32_t refused; /* bit n: a program has asked for more of motor n, in a limit. Q sets, R clears */
+static volatile bool foreground;  /* I13, as the last pass has seen it */
+static volatile bool stands;      /* B */
+static uint32_t shown;            /* B: signals that are on */
 
 void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
   foreground = stands = asked = false;
-  protection_watched = protection_always_watched = turn = urgent_watched = gone = 0;
+  protection_watched = protection_always_watched = turn = urgent_watched = gone = refused = 0;
   shown = 0;
 }
 
@@ -153,18 +154,26 @@ static void trip(uint32_t motor) {
 void protection_kill(uint32_t motor) {
   if (motors[motor].loop == LOOP_KILLED) return;
   motor_kill(motor);
-  const uint32_t state = hal_mask_real_time();
+  const uint32_t state = hal_mask_servo();
   gone |= 1u << motor;
   hal_unmask(state);
 }
 
-static void end_programs_of_gone(void) {
-  const uint32_t of = gone;
-  gone = 0;
+static void end_program(uint32_t motor) {
+  const struct axis_definition* d = &axis_definitions[motor];
+  if (!d->assigned) return;
+  if (coordinate_systems[d->cs].running || coordinate_systems[d->cs].active) protection_hooks.abort(d->cs);
+}
+
+/* Of motors that are gone, and that stand in a limit and were to go on. */
+static void end_programs(void) {
+  const uint32_t state = hal_mask_servo(), in_limit = refused, of = gone | in_limit;
+  gone = refused = 0;
+  hal_unmask(state);
   for (uint32_t motor = 0, left = of; left != 0u; ++motor, left >>= 1) {
-    const struct axis_definition* d = &axis_definitions[motor];
-    if ((left & 1u) == 0u || !d->assigned) continue;
-    if (coordinate_systems[d->cs].running || coordinate_systems[d->cs].active) protection_hooks.abort(d->cs);
+    if ((left & 1u) == 0u) continue;
+    if ((in_limit >> motor & 1u) != 0u) motors[motor].found.on_limit = true;
+    end_program(motor);
   }
 }
 
@@ -208,6 +217,20 @@ static bool is_at_software_limit(uint32_t motor, const struct view* view, bool u
 static bool is_beyond_desired(uint32_t motor, const struct view* view, bool up) {
   const struct guard* g = &guards[motor];
   return (up ? view->commanded > g->positive_desired : view->commanded < g->negative_desired) && !jog_is_homing(motor);
+}
+
+bool protection_is_in_limit(uint32_t motor, bool up, bool homes) {
+  const struct guard* g = &guards[motor];
+  const struct view view = look_now(motor);
+  if (is_at_input(motor, up)) return true;
+  const bool beyond = up ? view.commanded > g->positive_desired : view.commanded < g->negative_desired;
+  return !homes && (beyond || has_passed(g, &view, up));
+}
+
+void protection_refuse(uint32_t motor) {
+  refused |= 1u << motor;
+  asked = true;
+  hal_request_real_time();
 }
 
 /* Overtravel input and software limit. An input in front of a software limit that is on says that the position is
@@ -358,7 +381,7 @@ void protection_stand(bool still) { stands = still; }
 void protection_pass(void) {
   if (stands) return;
   asked = false;
-  if (gone != 0u) end_programs_of_gone();
+  if ((gone | refused) != 0u) end_programs();
   foreground = i_variable_foreground_in_position();
   protection_always_watched = foreground ? UINT32_MAX : 0u;
   uint32_t left = motors_active;

@@ -20,7 +20,12 @@ void protection_initialize(void);
 void protection_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
 void protection_pass(void);                    /* real-time task: all motors */
 void protection_kill(
-    uint32_t motor);                /* 0..31, by a variable of it: the program of its system ends with the next pass */
+    uint32_t motor); /* 0..31, by a variable of it: the program of its system ends with the next pass */
+/* 0..31, servo task held off: whether the motor stands in a limit of that side, as it is now. Software limits count for
+ * no search for home. */
+bool protection_is_in_limit(uint32_t motor, bool up, bool homes);
+void protection_refuse(
+    uint32_t motor);                /* the same: a program asks for more of it. That is aborted with the next pass */
 bool protection_is_asked_for(void); /* real-time task: the servo task has seen what does not wait */
 void protection_stand(bool still);  /* background: nothing is looked at (SAVE) */
 /* As found, and not jogged since: who asks at once behind a command would take it for done. */

@@ -289,34 +289,37 @@ TEST_F(HoldsAndAborts, AStepInAStepNeedsNoWayBack) {
   EXPECT_EQ(motors[0].trajectory, position(3100));
 }
 
-// Into a limit that the motor stands in no jog goes, out of it each (motion:6.2/3); a search for home goes, too.
+// Into a limit that the motor stands in no jog goes, out of it each (motion:6.2/3); a search for home goes into those
+// of software. Seen as the command comes: no pass of protection has been.
 TEST_F(HoldsAndAborts, JogsGoOutOfALimitOnly) {
-  ASSERT_EQ(host("I113=1000 I123=10 #1J/"), "");
+  constexpr std::uint32_t kFlags = 0x78000, kPositive = 1u << 17, kNegative = 1u << 18;
+  ASSERT_EQ(host("#1J/"), "");
   ticks(10);
-  motors[0].trajectory = motors[0].commanded = position(50);
-  auto& found = motors[0].found;
-  for (auto [up, at_limit] : {std::pair(true, &found.positive_limit),
-                              {false, &found.negative_limit},
-                              {true, &found.positive_desired},
-                              {false, &found.negative_desired}}) {
-    auto& limit = *at_limit;
-    for (const char* line : {"J+", "J=100", "J:50", "J-", "J=0", "J:-50"}) {
-      limit = true;
-      ASSERT_EQ(host(line), "") << line;
-      const bool goes_up = line[1] == '+' || std::string(line) == "J=100" || std::string(line) == "J:50";
-      EXPECT_EQ(jog_is_moving(0), goes_up != up) << line << (up ? ", above" : ", below");
-      limit = false;
+  const struct {
+    bool up, searches;
+    const char* limits;
+    std::uint32_t inputs;
+    int actual;
+  } cases[] = {{true, true, "I124=$820001 I113=50 I114=0", 0, 50},
+               {false, true, "I124=$820001 I113=0 I114=50", 0, 50},
+               {true, true, "I124=$828001 I113=60 I114=0 I141=20", 0, 30},
+               {false, true, "I124=$828001 I113=0 I114=40 I141=20", 0, 70},
+               {true, false, "I124=$800001 I113=0 I114=0", kPositive, 50},
+               {false, false, "I124=$800001 I113=0 I114=0", kNegative, 50}};
+  for (const auto& one : cases) {
+    ASSERT_EQ(host(one.limits), "");
+    *hal_x(kFlags) = one.inputs;
+    for (const std::string line : {"J+", "J=100", "J:50", "J-", "J=0", "J:-50", "I123=10 HM", "I123=-10 HM"}) {
+      motors[0].trajectory = motors[0].commanded = position(50);
+      motors[0].actual = position(one.actual);
+      ASSERT_EQ(host("#1" + line), "") << line;
+      const bool goes_up = line == "J+" || line == "J=100" || line == "J:50" || line == "I123=10 HM";
+      const bool searches = line.back() == 'M' && one.searches;
+      EXPECT_EQ(jog_is_moving(0), goes_up != one.up || searches) << one.limits << " " << line;
       const std::uint32_t state = hal_mask_servo();
       jog_drop(0);
       hal_unmask(state);
     }
-    limit = true;
-    ASSERT_EQ(host(up ? "I123=10 HM" : "I123=-10 HM"), "");
-    EXPECT_TRUE(jog_is_moving(0));
-    limit = false;
-    ASSERT_EQ(host("J/"), "");
-    ticks(200);
-    motors[0].trajectory = position(50);
   }
 }
 

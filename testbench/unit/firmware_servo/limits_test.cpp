@@ -142,6 +142,52 @@ TEST_F(MotionLimits, RapidMovesAreOfTheirProgram) {
   }
 }
 
+// A program does not pass over a move into a limit in which its motor stands: it is aborted.
+TEST_F(MotionLimits, AProgramEndsAtAMoveIntoALimit) {
+  for (const char* move : {"RAPID X20000", "HOME1", "LINEAR TM100 TA20 TS0 X20000"}) {
+    flags(1, 0);
+    c_.line("I123=20 P1=0 #1HMZ");
+    close_all();
+    flags(1, kPositive);
+    follow(10);
+    const double stands = at(1);
+    run({move, "DWELL10", "P1=1"});
+    follow(100);
+    EXPECT_FALSE(runs()) << move;
+    EXPECT_EQ(c_.line("P1"), "0") << move;
+    EXPECT_TRUE(status2(1, 11)) << move;
+    EXPECT_LT(at(1), stands + 20) << move;
+    EXPECT_EQ(status2(1, 10), move[0] != 'H') << "home complete: " << move;
+    run({"RAPID X-1000", "DWELL1", "P1=2"});
+    follow(300);
+    EXPECT_EQ(c_.line("P1"), "2") << "out of it, behind " << move;
+  }
+}
+
+// A search for home into an input where the motor stands goes nowhere; one that has passed a software limit does.
+TEST_F(MotionLimits, ASearchDoesNotBeginInAnInput) {
+  c_.line("I123=20");
+  ASSERT_TRUE(motor_close(0));
+  flags(1, kPositive);
+  follow(10);
+  EXPECT_EQ(c_.line("#1HMZ HM"), "");
+  follow(50);
+  EXPECT_EQ(at(1), 0);
+  EXPECT_FALSE(status2(1, 10)) << "home complete";
+  c_.line("#1I123=-20 HM");
+  follow(50);
+  EXPECT_LT(at(1), -100) << "out of it";
+  c_.line("#1J/");
+  follow(50);
+  flags(1, 0);
+  c_.line("#1HMZ I113=-1 I123=20");
+  follow(10);
+  EXPECT_TRUE(status1(1, 21));
+  c_.line("#1HM");
+  follow(50);
+  EXPECT_GT(at(1), 100);
+}
+
 // Ixx24 bit 8: the input kills, if the software limit of its side is on and not reached.
 TEST_F(MotionLimits, AnInputKillsInFrontOfTheSoftwareLimit) {
   const struct {
