@@ -43,7 +43,7 @@ void convert_armed(const struct conversion_entry* entry) {
     state->previous = *entry->source[ENCODER_CAPTURED] << TIME_BASE_BITS;
   }
   const uint32_t now = conversion_with_time(entry, *entry->source[ENCODER_POSITION], TIME_BASE_BITS);
-  *entry->result = (uint32_t)(2 * entry->parameter[1]) * (uint32_t)hal_signed(now - state->previous) & HAL_WORD_MASK;
+  *entry->result = conversion_rate(entry->parameter[1], hal_signed(now - state->previous));
   *entry->first_result = now & HAL_WORD_MASK;
   state->previous = now;
 }

@@ -37,4 +37,10 @@ static inline int32_t conversion_magnitude(const struct conversion_entry* entry,
   return (int32_t)((uint32_t)entry->parameter[line] & HAL_WORD_MASK);
 }
 
+/* 2 x factor x movement, of a time base: one that is too fast for the word is at its end, and does not turn round. */
+static inline uint32_t conversion_rate(int32_t factor, int32_t movement) {
+  const int64_t rate = 2 * (int64_t)factor * movement, most = HAL_WORD_MASK >> 1;
+  return (uint32_t)(rate > most ? most : rate < -most ? -most : rate) & HAL_WORD_MASK;
+}
+
 #endif

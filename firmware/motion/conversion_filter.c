@@ -12,7 +12,7 @@ void convert_time_base(const struct conversion_entry* entry) {
   const uint32_t now = *entry->source[0];
   if (state->fresh) state->previous = now;
   state->fresh = false;
-  *entry->result = (uint32_t)(2 * entry->parameter[1]) * (uint32_t)hal_signed(now - state->previous) & HAL_WORD_MASK;
+  *entry->result = conversion_rate(entry->parameter[1], hal_signed(now - state->previous));
   *entry->first_result = now & HAL_WORD_MASK;
   state->previous = now;
 }

@@ -1,6 +1,7 @@
 // The encoder conversion table against motion:2: its check vectors, and every method worked out from its row.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <string>
@@ -267,6 +268,26 @@ TEST_F(ConversionTable, TimeBase) {
   EXPECT_EQ(once(1), (1 << 23) / 4);
   x(kFree, 1000);
   EXPECT_EQ(once(1), -(1 << 23) / 4);
+}
+
+// RTIF 32: SF = 4096. At 100 ct/ms and 2.25 kHz it is 3.1 times what 2^23 holds of it: the end, not a turn (TU348).
+TEST_F(ConversionTable, ATimeBaseThatIsTooFastIsAtItsEnd) {
+  table("4010F0 001000");
+  std::int64_t at = 0;
+  x(kFree, at);
+  once(1);
+  for (const int counts : {31, 32, 44, 100, -31, -32, -44, -100}) {
+    x(kFree, at += counts * 32);
+    const std::int64_t rate = std::int64_t{2} * 4096 * counts * 32, most = (1 << 23) - 1;
+    EXPECT_EQ(once(1), std::clamp(rate, -most, most)) << counts;
+  }
+  table("AF8000 000400");
+  channel(0, false, 0, 0);
+  once(1);
+  channel(15, false, 0, 0);
+  EXPECT_EQ(once(1), 512 * 1024 * 15);
+  channel(15 + 17, false, 0, 0);
+  EXPECT_EQ(once(1), (1 << 23) - 1);
 }
 
 TEST_F(ConversionTable, TriggeredTimeBase) {
