@@ -194,7 +194,8 @@ static error_t open_loop(struct lexer* lx) {
   if (!lexer_value_starts(*lx)) return program_text(lx, 1);
   error_t error = lexer_constant(lx, &output);
   if (error != ERR_NONE) return error;
-  if (output < -LARGEST_OUTPUT || output > LARGEST_OUTPUT) return ERR_DATA;
+  if (output > LARGEST_OUTPUT) output = LARGEST_OUTPUT;
+  if (output < -LARGEST_OUTPUT) output = -LARGEST_OUTPUT;
   error = may_move(session.motor);
   if (error == ERR_NONE && stands_in_limit(session.motor)) error = ERR_BOTH_LIMITS;
   if (error != ERR_NONE) return error;

@@ -174,10 +174,18 @@ static void write_reference(uint32_t motor, uint32_t offset, bool x, uint32_t ma
   if (offset == MOTOR_STATUS_2 && !x && (mask & bit) != 0u) phasing_set_missing(motor, (bits & bit) != 0u);
 }
 
+/* A variable O command. The register is read where it stands: the servo task writes it. */
+static void write_output(uint32_t in_motors, bool x, uint32_t mask, uint32_t bits) {
+  if (!x || in_motors >= MOTORS_END - MEMORY_MOTOR_WORDS) return;
+  if (in_motors % MEMORY_MOTOR_WORDS == MEMORY_MOTOR_FILTER_OUTPUT)
+    servo_word_write_output(in_motors / MEMORY_MOTOR_WORDS, mask, bits);
+}
+
 /* The commanded time base, blending (bit 4 of status word 1), the run-time error (bit 22 of word 2), the timers and the
  * phase reference error can be set, global status bits that stay can be cleared; the others belong to the firmware. */
 bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
   uint32_t present[2];
+  write_output(address - MEMORY_MOTOR_WORDS, x, mask, bits);
   if ((make(address, &present[1], &present[0]) & (x ? HALF_X : HALF_Y)) == 0u) return false;
   if (address == MEMORY_GLOBAL_STATUS && x) status_clear(mask & ~bits);
   const uint32_t in_systems = address - MEMORY_CS_WORDS;

@@ -147,6 +147,14 @@ void servo_word_write(uint32_t motor, uint32_t offset, bool x, uint32_t mask, ui
   (void)write_position(motor, offset, (uint64_t)mask << half, (uint64_t)bits << half);
 }
 
+/* Opening a loop says it anew. */
+void servo_word_write_output(uint32_t motor, uint32_t mask, uint32_t bits) {
+  struct motor* m = &motors[motor];
+  const uint32_t state = hal_mask_servo();
+  m->open_output = hal_signed(((uint32_t)m->open_output & ~mask) | bits);
+  hal_unmask(state);
+}
+
 bool servo_word_write_long(uint32_t motor, uint32_t offset, uint32_t x, uint32_t y) {
   return write_position(motor, offset, ~0ull, (uint64_t)x << LONG_X_SHIFT | y);
 }

@@ -13,6 +13,7 @@ void servo_words_motor_changed(uint32_t motor);
 unsigned servo_word_read(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y);
 /* Bits of `mask` of one that was made: the variable is assigned, a position set, anything else stays. */
 void servo_word_write(uint32_t motor, uint32_t offset, bool x, uint32_t mask, uint32_t bits);
+void servo_word_write_output(uint32_t motor, uint32_t mask, uint32_t bits); /* X:+$3F: what an open loop puts out */
 bool servo_word_write_long(uint32_t motor, uint32_t offset, uint32_t x, uint32_t y); /* false: no position */
 
 #endif

@@ -129,7 +129,7 @@ TEST_F(MotorCommands, EndlessJogsGoUntilTheyAreStopped) {
 }
 
 TEST_F(MotorCommands, Errors) {
-  for (const char* line : {"#1J", "J=X", "J:", "J^", "J=1^", "J+^5", "J==", "J:99999999999", "O101", "O-100.5"})
+  for (const char* line : {"#1J", "J=X", "J:", "J^", "J=1^", "J+^5", "J==", "J:99999999999", "OX"})
     EXPECT_EQ(host(line), "ERR003") << line;
   EXPECT_EQ(motors[0].loop, LOOP_KILLED) << "nothing was closed for what is wrong";
   for (const char* line :
@@ -177,6 +177,9 @@ TEST_F(MotorCommands, OpenLoopTakesPerCentOfIxx69) {
   EXPECT_EQ(motors[0].open_output, -2500 * 256);
   for (const int sign : {1, -1}) {
     ASSERT_EQ(host(sign > 0 ? "O100" : "O-100"), "");
+    EXPECT_EQ(motors[0].open_output, sign * 20000 * 256);
+    ASSERT_EQ(host("O0"), "");
+    ASSERT_EQ(host(sign > 0 ? "O100.5" : "O-1000"), "") << "more is as much";
     EXPECT_EQ(motors[0].open_output, sign * 20000 * 256);
   }
   ASSERT_EQ(host("J/"), "");

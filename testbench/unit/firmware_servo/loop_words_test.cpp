@@ -329,6 +329,35 @@ TEST_F(LoopWords, OpenLoopPutsOutWhatItIsTold) {
   EXPECT_EQ(*hal_y(kDac), 0u) << "nor later";
 }
 
+// A variable O command: whoever writes X:$BF of an open loop says what it puts out, all of it or a part.
+TEST_F(LoopWords, AnOpenLoopPutsOutWhatItsRegisterIsGiven) {
+  c_.line("M168->X:$BF,8,16,S M5->X:$BF,0,24,S M6->X:$13F,8,16,S");
+  const auto output = [] {
+    position_loop_servo(0);
+    motor_output_servo(0);
+    return hal_signed(*hal_y(kDac));
+  };
+  ASSERT_EQ(c_.line("#1O10"), "");
+  const std::int32_t before = output();
+  EXPECT_EQ(c_.line("M6=77"), "") << "that of motor 2";
+  EXPECT_EQ(output(), before);
+  c_.line("M5=$7F M168=-5000");
+  EXPECT_EQ(output(), -5000 * 256 + 0x7F);
+  EXPECT_EQ(c_.line("M168"), "-5000");
+  c_.line("M5=8388607");
+  EXPECT_EQ(output(), 8388607);
+  c_.line("#1O0");
+  EXPECT_EQ(output(), 0);
+  close(0, 0);
+  c_.line("M168=5000");
+  EXPECT_EQ(output(), 0) << "a loop that is closed";
+  motor_kill(0);
+  c_.line("M168=5000");
+  EXPECT_EQ(output(), 0);
+  ASSERT_TRUE(motor_open(0, 0));
+  EXPECT_EQ(output(), 0) << "what was written before counts for nothing";
+}
+
 // The bias is added after the clip, and stays on the output of a killed motor.
 TEST_F(LoopWords, BiasIsAddedToTheWord) {
   c_.line("I129=-300 I169=1000 I130=100000");
