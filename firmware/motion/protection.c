@@ -91,6 +91,7 @@ void protection_motor_changed(uint32_t motor) {
 
 struct view { /* of one moment */
   int64_t actual, commanded;
+  int64_t error; /* of the last closure of the loop, as `actual` is: the motor is commanded on until the next */
   int32_t velocity, desired_step;
   enum motor_loop loop;
 };
@@ -98,7 +99,7 @@ struct view { /* of one moment */
 /* Servo task held off, or in it. */
 static inline struct view look_now(uint32_t motor) {
   const struct motor* m = &motors[motor];
-  return (struct view){m->actual, m->commanded, m->velocity, m->desired_step, m->loop};
+  return (struct view){m->actual, m->commanded, m->closed_at - m->actual, m->velocity, m->desired_step, m->loop};
 }
 
 static struct view look(uint32_t motor) {
@@ -294,14 +295,12 @@ static bool check_fault(uint32_t motor) {
   return true;
 }
 
-static int64_t error_of(const struct view* view) { return magnitude(view->commanded - view->actual); }
-
 static bool integral_trips(uint32_t motor) { return guards[motor].integral_trips && position_loop_is_limited(motor); }
 
 static bool check_error(uint32_t motor, const struct view* view) {
   const struct guard* g = &guards[motor];
   struct motor_findings* found = &motors[motor].found;
-  const int64_t error = error_of(view);
+  const int64_t error = magnitude(view->error);
   const bool integral = integral_trips(motor);
   found->warning_error = error > g->warning_error;
   if (error <= g->fatal_error && !integral) return false;
@@ -313,7 +312,7 @@ static bool check_error(uint32_t motor, const struct view* view) {
 
 static void check_in_position(uint32_t motor, const struct view* view) {
   struct guard* g = &guards[motor];
-  if (!is_in_position(motor, view->commanded - view->actual, view->desired_step))
+  if (!is_in_position(motor, view->error, view->desired_step))
     g->scans = 0;
   else if (g->scans < g->scans_wanted)
     g->scans++;
@@ -407,7 +406,7 @@ static bool is_urgent(uint32_t motor) {
   const bool closed = m->loop == LOOP_CLOSED;
   const int64_t commanded = m->commanded, actual = m->actual;
   const int32_t by = closed ? m->desired_step : m->velocity;
-  if (closed && magnitude(commanded - actual) > g->fatal_error) return true;
+  if (closed && magnitude(m->closed_at - actual) > g->fatal_error) return true;
   bool beyond = false;
   if (by > 0) beyond = actual >= g->positive_limit || (closed && commanded > g->positive_desired);
   if (by < 0) beyond = actual <= g->negative_limit || (closed && commanded < g->negative_desired);
@@ -425,7 +424,7 @@ void protection_take_turn(void) {
 static __attribute__((noinline)) void look_foreground(uint32_t motor) {
   const struct motor* m = &motors[motor];
   motors[motor].found.foreground_in_position =
-      m->loop == LOOP_CLOSED && is_in_position(motor, m->commanded - m->actual, m->desired_step);
+      m->loop == LOOP_CLOSED && is_in_position(motor, m->closed_at - m->actual, m->desired_step);
 }
 
 void protection_look(uint32_t motor) {

@@ -123,6 +123,30 @@ TEST_F(Protection, FollowingErrorWarnsAndTrips) {
   EXPECT_EQ(loop(1), LOOP_CLOSED);
 }
 
+// With Ixx60 the error is that of the last closure: what has been commanded since, up to 141 counts here, is none of
+// it.
+TEST_F(Protection, TheFollowingErrorIsThatOfTheClosure) {
+  for (const char* real_time : {"I8=2", "I8=40"}) {
+    c_.line(real_time);
+    c_.line("I160=9 I111=160 I112=80 I119=10 I120=1 I121=0 I122=32 I192=1");
+    close_all();
+    c_.line("#1J+");
+    for (int n = 0; n < 300; ++n) {
+      counts(1, at(1) + static_cast<double>(motors[0].desired_step) / kFine);  // where it is to be next
+      servo();
+      ASSERT_EQ(loop(1), LOOP_CLOSED) << n;
+    }
+    EXPECT_FALSE(status2(1, 1)) << "nor is it a warning";
+    EXPECT_LT(std::abs(std::stod(c_.line("#1F"))), 1);
+    counts(1, at(1) - 20);
+    servo(20);
+    EXPECT_EQ(loop(1), LOOP_KILLED) << "a true one trips";
+    c_.line("I160=0");
+    counts(1, 0);
+    servo();
+  }
+}
+
 // Ixx24 bits 22 and 21: all motors, this coordinate system, this motor.
 TEST_F(Protection, OthersAreKilledAsIxx24Says) {
   struct {
