@@ -154,6 +154,7 @@ bool jog_stop_at(uint32_t motor, double deceleration) {
 /* Servo task held off, or in it. */
 static void nothing_moves(uint32_t motor) {
   struct motor_status_flags* status = &motors[motor].status;
+  if (jog_is_triggered(motor)) status->trigger_move = false;
   status->timed_move = status->aborting = status->home_search = false;
   jog_not_ready(motor);
   jogs[motor].requests++;

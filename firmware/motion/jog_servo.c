@@ -52,9 +52,10 @@ static void found(uint32_t motor, int64_t position) {
   struct jog_motion then = *jog_now(j);
   const bool homes = then.homes;
   jog_now(j)->searches = false;
-  status->home_search = status->trigger_move = false;
+  status->home_search = false;
   then.aim = AIM_TARGET;
   then.searches = false;
+  then.triggered = !homes;
   then.together = 0;
   then.target = jog_trajectory_at(motor, position) + then.beyond;
   if (homes) {
@@ -64,7 +65,10 @@ static void found(uint32_t motor, int64_t position) {
     j->before = 0;
     status->home_complete = true;
   }
-  if (j->ready || (jogs_asked & jog_bit(motor)) != 0u) return; /* something else has been asked for */
+  if (j->ready || (jogs_asked & jog_bit(motor)) != 0u) { /* something else has been asked for */
+    status->trigger_move = jog_is_trigger_move(&j->request);
+    return;
+  }
   then.homes = false;
   jog_post(motor, &then);
 }
@@ -80,9 +84,12 @@ static __attribute__((noinline)) void over(uint32_t motor) {
   struct motor_status_flags* status = &motors[motor].status;
   motors[motor].path = PATH_STANDS;
   if (jog_now(j)->by_program) arrives(&motors[motor]);
+  const bool triggered = jog_now(j)->triggered;
   status->timed_move = status->aborting = status->home_search = false;
   jog_rests(j);
-  if (!j->ready && (jogs_asked & jog_bit(motor)) == 0u) jogs_busy &= ~jog_bit(motor);
+  if (j->ready || (jogs_asked & jog_bit(motor)) != 0u) return;
+  if (triggered) status->trigger_move = false;
+  jogs_busy &= ~jog_bit(motor);
 }
 
 /* What only few interrupts have to do stands apart: the rest is quicker without. */

@@ -12,7 +12,13 @@ void jog_not_ready(uint32_t motor) {
 void jog_rests(struct jog* j) {
   struct jog_motion* now = jog_now(j);
   now->aim = AIM_REST;
-  now->searches = now->homes = false;
+  now->searches = now->homes = now->triggered = false;
+}
+
+bool jog_is_triggered(uint32_t motor) {
+  struct jog* j = &jogs[motor];
+  const bool waits = j->ready || (jogs_asked & jog_bit(motor)) != 0u;
+  return jog_now(j)->triggered || (waits && j->request.triggered);
 }
 
 void jog_post(uint32_t motor, const struct jog_motion* request) {
@@ -22,7 +28,9 @@ void jog_post(uint32_t motor, const struct jog_motion* request) {
   j->request = *request;
   j->request_begins = j->clock + j->delay;
   j->requests++;
-  status->trigger_move = request->searches && !request->homes;
+  const bool stops = request->aim == AIM_REST || request->aim == AIM_RAMP;
+  if (!stops || jog_is_triggered(motor))
+    status->trigger_move = jog_is_trigger_move(request); /* else it has found none */
   if (request->homes) status->home_complete = false;
   jogs_busy |= jog_bit(motor);
   jogs_asked |= jog_bit(motor);

@@ -20,6 +20,7 @@ enum jog_aim { AIM_SPEED, AIM_REST, AIM_TARGET, AIM_RAMP };
 struct jog_motion {
   enum jog_aim aim;
   bool searches, homes; /* for a trigger; which becomes home */
+  bool triggered;       /* from a trigger that is not home, to where the move ends */
   bool by_program;      /* held with its coordinate system */
   uint32_t together;    /* motors that begin at the same interrupt, at rest until then; 0: it alone */
   int32_t rate;         /* of a ramp off what slews to another: from its begin on; 0: that of then */
@@ -70,6 +71,12 @@ static inline int32_t jog_rate_of(const struct motor* m, bool by_program) {
   return s->held && !by_program ? s->increment_command : s->increment;
 }
 
+/* Status word 2 bit 7: until a trigger, and on from there. */
+static inline bool jog_is_trigger_move(const struct jog_motion* motion) {
+  return (motion->searches && !motion->homes) || motion->triggered;
+}
+
+bool jog_is_triggered(uint32_t motor);                           /* on the way from a trigger, or about to be */
 void jog_not_ready(uint32_t motor);                              /* servo task held off, or in it: nothing is next */
 void jog_rests(struct jog* j);                                   /* servo task held off, or in it: at AIM_REST */
 void jog_post(uint32_t motor, const struct jog_motion* request); /* the same */

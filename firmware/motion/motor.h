@@ -25,7 +25,7 @@ struct motor_status_flags {
   volatile bool timed_move;   /* a move of known length, not a jog that goes on or a search before its trigger */
   volatile bool aborting;     /* the ramp of an abort, Ixx15 */
   volatile bool home_search;  /* for any trigger, until it has come */
-  volatile bool trigger_move; /* one that has not found its trigger */
+  volatile bool trigger_move; /* until a trigger, to its end; stays when none was found */
   volatile bool home_complete;
 };
 

@@ -321,6 +321,10 @@ TEST_F(Homing, JogUntilATriggerGoesOnFromThere) {
     EXPECT_TRUE(motors[0].status.home_search) << form;
     EXPECT_TRUE(motors[0].status.timed_move) << form;
     EXPECT_FALSE(jog_is_homing(0)) << form;
+    while (motors[0].status.home_search) tick();
+    EXPECT_TRUE(motors[0].status.trigger_move) << "to its end: " << form;
+    run(20);
+    EXPECT_TRUE(motors[0].status.trigger_move) << form;
     settle();
     EXPECT_EQ(place(), std::floor(at) - 25.5) << form;
     EXPECT_EQ(zero_, zero) << "positions stay";
@@ -328,6 +332,47 @@ TEST_F(Homing, JogUntilATriggerGoesOnFromThere) {
     ASSERT_EQ(host("#1J=0"), "");
     settle();
   }
+}
+
+// Whoever ends it: bit 7 says afterwards whether there was no trigger.
+TEST_F(Homing, AJogUntilATriggerThatIsStoppedTellsWhetherItWasFound) {
+  begin(0);
+  for (const char* stop : {"J/", "K", "\x01"}) {
+    for (const bool comes : {false, true}) {
+      ASSERT_EQ(host("#1J/"), "");
+      settle();
+      ASSERT_EQ(host("#1J:9000^500"), "");
+      run(200);
+      ASSERT_TRUE(motors[0].status.home_search);
+      if (comes) trigger_at(place() + 1);
+      run(comes ? 20 : 0);
+      EXPECT_EQ(motors[0].status.home_search, !comes);
+      if (*stop == '\x01')
+        ASSERT_FALSE(control_character(1));
+      else
+        ASSERT_EQ(host(stop), "");
+      settle();
+      EXPECT_EQ(motors[0].status.trigger_move, !comes) << stop;
+    }
+  }
+  ASSERT_EQ(host("#1J=0"), "");
+  EXPECT_FALSE(motors[0].status.trigger_move) << "another move";
+}
+
+// One that is asked for as the other finds its trigger has not found its own.
+TEST_F(Homing, AJogUntilATriggerBehindAnotherWaitsForItsOwn) {
+  ASSERT_EQ(host("I192=20"), "");
+  begin(0);
+  ASSERT_EQ(host("#1J=9000^0"), "");
+  run(200);
+  ASSERT_EQ(host("J=-9000^0"), "");
+  trigger_at(place() + 1);
+  run(20);
+  ASSERT_EQ(found_, 1u);
+  EXPECT_TRUE(motors[0].status.trigger_move);
+  ASSERT_EQ(host("J=0"), "");
+  settle();
+  EXPECT_FALSE(motors[0].status.trigger_move);
 }
 
 TEST_F(Homing, JogUntilATriggerThatDoesNotComeEndsAtItsTarget) {

@@ -201,8 +201,10 @@ TEST_F(ProgramsAndJogs, RapidUntilATriggerEndsBehindIt) {
   EXPECT_TRUE(motors[0].status.trigger_move);
   capture(1000);
   ticks(3);
-  EXPECT_FALSE(motors[0].status.trigger_move);
+  EXPECT_FALSE(motors[0].status.home_search);
+  EXPECT_TRUE(motors[0].status.trigger_move) << "it goes on to its end";
   end();
+  EXPECT_FALSE(motors[0].status.trigger_move);
   EXPECT_EQ(motors[0].trajectory, position(1000 + 500 + 1000));
   EXPECT_EQ(cs().position[AXIS_X], 2.5);
 }
