@@ -9,8 +9,8 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/lookahead_plan.h"
 #include "firmware/motion/motor.h"
-#include "firmware/motion/protection.h"
 #include "firmware/motion/segment.h"
+#include "firmware/motion/system_findings.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
@@ -82,7 +82,7 @@ static bool has_dwell(const struct coordinate_system* s) {
 static bool is_in_position(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (s->active || s->next_valid) return false;
-  return axis_definition_motors(cs) == 0u || protection_all_in_position(cs);
+  return axis_definition_motors(cs) == 0u || system_in_position(cs);
 }
 
 static uint32_t faults(uint32_t cs) {

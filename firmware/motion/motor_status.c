@@ -8,7 +8,7 @@
 #include "firmware/motion/desired_position.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/phasing.h"
-#include "firmware/motion/protection.h"
+#include "firmware/motion/system_findings.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
@@ -120,7 +120,7 @@ static uint32_t status2(uint32_t motor) {
       bit(found->integrated_current, M2_OVERLOAD) |
       bit(desired_position_backlash_is_down(motor), M2_BACKLASH_DIRECTION) |
       bit(found->amplifier_fault, M2_AMPLIFIER_FAULT) | bit(found->fatal_error, M2_FATAL_ERROR) |
-      bit(found->warning_error, M2_WARNING_ERROR) | bit(protection_in_position(motor), M2_IN_POSITION);
+      bit(found->warning_error, M2_WARNING_ERROR) | bit(motor_in_position(motor), M2_IN_POSITION);
   if (!d->assigned) return word;
   return word | d->cs << M2_COORDINATE_SYSTEM | axis_code(d) << M2_AXIS | bit(true, M2_ASSIGNED);
 }

@@ -1,7 +1,6 @@
 #include "firmware/motion/protection.h"
 
 #include "firmware/base/status.h"
-#include "firmware/buffers/buffer_request.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
@@ -12,6 +11,7 @@
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/overload.h"
 #include "firmware/motion/position_loop.h"
+#include "firmware/motion/system_findings.h"
 #include "firmware/variables/i_variables.h"
 
 enum { PART_OF_COUNT = 16, LIMIT_KILLS = 1 << 8, DESIRED_LIMITS = 1 << 15, OTHERS_SHIFT = 21 }; /* bits of Ixx24 */
@@ -39,14 +39,13 @@ static volatile uint32_t gone;    /* bit n: a variable has killed motor n, its p
 static volatile uint32_t refused; /* bit n: a program has asked for more of motor n, in a limit. Q sets, R clears */
 static volatile bool foreground;  /* I13, as the last pass has seen it */
 static volatile bool stands;      /* B */
-static uint32_t shown;            /* B: signals that are on */
 
 void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
   foreground = stands = asked = false;
   protection_watched = protection_always_watched = turn = urgent_watched = gone = refused = 0;
-  shown = 0;
+  system_findings_initialize();
 }
 
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
@@ -338,43 +337,6 @@ static void check(uint32_t motor) {
   check_in_position(motor, &view);
 }
 
-bool protection_in_position(uint32_t motor) { return motors[motor].found.in_position && !jog_is_moving(motor); }
-
-/* What a coordinate system's motors have in common. */
-struct findings {
-  bool in_position, fatal, warning; /* of all, of one, of one */
-};
-
-static struct findings findings_of(uint32_t cs) {
-  const uint32_t of = axis_motors[cs];
-  struct findings all = {.in_position = of != 0u};
-  for (uint32_t motor = 0, left = of; left != 0u; ++motor, left >>= 1) {
-    if ((left & 1u) == 0u) continue;
-    const struct motor_findings* found = &motors[motor].found;
-    all.in_position &= protection_in_position(motor);
-    if ((motors_active >> motor & 1u) == 0u) continue;
-    all.fatal |= found->fatal_error;
-    all.warning |= found->warning_error;
-  }
-  return all;
-}
-
-bool protection_all_in_position(uint32_t cs) { return findings_of(cs).in_position; }
-
-/* The coordinate system that the host or the panel has selected is shown on the lines of the interrupt controller. */
-static void show_signals(void) {
-  const uint32_t cs = buffer_request_selected();
-  uint32_t on = 0;
-  if (cs < COORDINATE_SYSTEMS) {
-    const struct findings all = findings_of(cs);
-    if (all.in_position) on |= HAL_SIGNAL_IPOS;
-    if (all.fatal) on |= HAL_SIGNAL_EROR;
-    if (all.warning) on |= HAL_SIGNAL_F1ER;
-  }
-  if (on != shown) hal_host_signals(on, shown & ~on);
-  shown = on;
-}
-
 void protection_stand(bool still) { stands = still; }
 
 void protection_pass(void) {
@@ -386,7 +348,7 @@ void protection_pass(void) {
   uint32_t left = motors_active;
   for (uint32_t motor = 0; left != 0u; ++motor, left >>= 1)
     if ((left & 1u) != 0u) check(motor);
-  show_signals();
+  system_findings_show();
 }
 
 bool protection_is_asked_for(void) { return asked; }

@@ -28,11 +28,7 @@ void protection_refuse(
     uint32_t motor);                /* the same: a program asks for more of it. That is aborted with the next pass */
 bool protection_is_asked_for(void); /* real-time task: the servo task has seen what does not wait */
 void protection_stand(bool still);  /* background: nothing is looked at (SAVE) */
-/* As found, and not jogged since: who asks at once behind a command would take it for done. */
-bool protection_in_position(uint32_t motor);  /* 0..31 */
-bool protection_all_in_position(uint32_t cs); /* those of a coordinate system; false: it has none */
-
-extern uint32_t protection_watched;                 /* S; bit n: the servo task looks at motor n in this interrupt */
+extern uint32_t protection_watched; /* S; bit n: the servo task looks at motor n in this interrupt */
 extern volatile uint32_t protection_always_watched; /* R; in each, as the last pass has left it */
 enum { PROTECTION_TURNS = 4 };                      /* servo interrupts in which all motors are looked at */
 static inline bool protection_takes_turns(void) { return i_integer(I8_REAL_TIME_PERIOD) >= PROTECTION_TURNS; }
