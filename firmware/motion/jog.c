@@ -3,6 +3,7 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/hal/hal.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/desired_position.h"
 #include "firmware/motion/jog_state.h"
@@ -23,15 +24,31 @@ static double real(uint32_t motor, enum i_real_name ixxnn) {
   return i_variable_read(I_MOTOR_BLOCK * (motor + 1u) + ixxnn);
 }
 
+static struct speed_limits limits_of(uint32_t motor) {
+  return speed_limits_make(real(motor, IXX19_JOG_ACCELERATION_LIMIT) * units(motor),
+                           i_variable_read(i_motor(motor + 1u, IXX20_JOG_ACCELERATION_TIME)),
+                           i_variable_read(i_motor(motor + 1u, IXX21_JOG_S_CURVE_TIME)));
+}
+
 static struct jog_motion make(uint32_t motor, enum jog_aim aim, double speed) {
   const double scale = units(motor), fast = speed * scale;
   struct jog_motion request = {.aim = aim, .speed = fast < FASTEST ? fast : FASTEST};
   if (fast < -FASTEST) request.speed = -FASTEST;
-  request.limits = speed_limits_make(real(motor, IXX19_JOG_ACCELERATION_LIMIT) * scale,
-                                     i_variable_read(i_motor(motor + 1u, IXX20_JOG_ACCELERATION_TIME)),
-                                     i_variable_read(i_motor(motor + 1u, IXX21_JOG_S_CURVE_TIME)));
+  request.limits = limits_of(motor);
   request.capture = capture_make(motor);
   return request;
+}
+
+/* The speed of a RAPID move is the program's. */
+void jog_take_speeds(uint32_t motor, struct jog_motion* motion) {
+  slice_pause();
+  motion->limits = limits_of(motor);
+  slice_pause();
+  if (motion->by_program && motion->triggered) return;
+  const double speed = real(motor, (enum i_real_name)(IXX22_JOG_SPEED + (motion->triggered ? 0 : 1)));
+  slice_pause();
+  const double fast = math_absolute(speed) * units(motor);
+  motion->speed = fast < FASTEST ? fast : FASTEST;
 }
 
 static double jog_speed(uint32_t motor) { return math_absolute(real(motor, IXX22_JOG_SPEED)); }

@@ -10,6 +10,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct jog_motion;
+
 /* What requests ask of those who watch motors; image/tables.c fills it in. Servo task held off. */
 struct jog_hooks {
   bool (*is_in_limit)(uint32_t motor, bool up, bool homes); /* it stands there: motion/protection.h */
@@ -37,6 +39,9 @@ bool jog_stop_at(uint32_t motor, double deceleration);
 /* At once, servo task held off. */
 void jog_drop(uint32_t motor);          /* nothing moves it any more: killed, open loop, stopped on the spot */
 void jog_program_takes(uint32_t motor); /* a program moves it from now on: PATH_SYSTEM */
+
+/* Real-time task, in slices: behind a trigger, Ixx19 to Ixx23 as they are now. */
+void jog_take_speeds(uint32_t motor, struct jog_motion* motion);
 
 /* Any task. More of it stands in the motor's status flags (motion/motor.h). */
 bool jog_is_moving(uint32_t motor);     /* on its way, or about to be */

@@ -173,6 +173,7 @@ static bool plan(uint32_t motor) {
     hal_unmask(state);
     if (to_do != LOOK_PLAN) return false;
     slice_pause();
+    if (b.motion.anew) jog_take_speeds(motor, &b.motion);
     b.motion.rate = rate_of(&b, &coordinate_systems[motors[motor].cs]);
     struct own_path_state from = own_path_state(&b.place);
     if (b.motion.rate != 0) from.speed *= math_divide((double)b.rate, (double)b.motion.rate);

@@ -56,6 +56,7 @@ static void found(uint32_t motor, int64_t position) {
   then.aim = AIM_TARGET;
   then.searches = false;
   then.triggered = !homes;
+  then.anew = true;
   then.together = 0;
   then.target = jog_trajectory_at(motor, position) + then.beyond;
   if (homes) {

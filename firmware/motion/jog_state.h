@@ -21,6 +21,7 @@ struct jog_motion {
   enum jog_aim aim;
   bool searches, homes; /* for a trigger; which becomes home */
   bool triggered;       /* from a trigger that is not home, to where the move ends */
+  bool anew;            /* from any trigger: at speeds as they are now */
   bool by_program;      /* held with its coordinate system */
   uint32_t together;    /* motors that begin at the same interrupt, at rest until then; 0: it alone */
   int32_t rate;         /* of a ramp off what slews to another: from its begin on; 0: that of then */

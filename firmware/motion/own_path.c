@@ -299,7 +299,9 @@ struct own_path_state own_path_state(const struct own_path_place* place) {
   slice_pause();
   const double square = (double)c->square, cube = (double)c->cube;
   slice_pause();
-  const double bend = part * (square + part * cube);
+  const double steep = square + part * cube;
+  slice_pause();
+  const double bend = part * steep;
   slice_pause();
   const double moved = part * ((double)c->linear + bend);
   slice_pause();

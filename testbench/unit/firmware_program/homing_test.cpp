@@ -334,6 +334,28 @@ TEST_F(Homing, JogUntilATriggerGoesOnFromThere) {
   }
 }
 
+// Before a trigger it goes at the speeds of its command, from there at those that there are then.
+TEST_F(Homing, TheWayBehindATriggerIsAtTheSpeedsOfThen) {
+  begin(0);
+  const double ms = platform::kDefaultI10 / 8388608.0;
+  for (const bool homes : {false, true}) {
+    ASSERT_EQ(host("#1I122=2 I123=2 I126=-48000"), "");
+    ASSERT_EQ(host(homes ? "#1HM" : "#1J:9000^-3000"), "");
+    run(200);
+    ASSERT_EQ(host(homes ? "#1I123=-30 I122=4" : "#1I123=4 I122=30"), "");
+    double last = place(), fastest = 0;
+    run(100);
+    EXPECT_NEAR((place() - last) / 100 / ms, 2, 0.05) << "as it was told";
+    trigger_at(place() + 1);
+    for (int n = 0; n < 20000 && (n < 50 || jog_is_moving(0)); ++n) {
+      last = place();
+      tick();
+      fastest = std::max(fastest, std::abs(place() - last) / ms);
+    }
+    EXPECT_NEAR(fastest, 30, 0.5) << homes;
+  }
+}
+
 // Whoever ends it: bit 7 says afterwards whether there was no trigger.
 TEST_F(Homing, AJogUntilATriggerThatIsStoppedTellsWhetherItWasFound) {
   begin(0);
