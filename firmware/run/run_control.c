@@ -131,33 +131,20 @@ static bool ends_hold_alone(uint32_t cs) {
   return s->held && !s->running && s->own_stop && !moves_wait(cs);
 }
 
-error_t run_start(uint32_t cs, bool single_step) {
+/* A program that has failed meanwhile, or that a limit has stopped, ramps its motors down: that is not taken from them,
+ * nor does time go on before they have left the path. Real-time task held off. */
+static void go_on(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  error_t error = check_return(cs);
-  if (error == ERR_NONE) error = check_program(cs);
-  if (error == ERR_NONE && !s->running) error = kinematic_program_check(cs);
-  if (error != ERR_NONE) return error;
-  if (ends_hold_alone(cs)) {
-    s->must_return = false;
-    time_base_go_on(cs);
-    return ERR_NONE;
-  }
   if (s->running && (s->held || segment_stands(cs))) system_motors_take(cs);
-  if (s->running) segment_order(cs, LOOKAHEAD_FORWARD);
   s->must_return = false;
-  time_base_go_on(cs);
-  if (s->running && single_step) {
-    if (s->continuous) run_quit(cs); /* while a step waits for its move, one more changes nothing */
-    s->continuous = false;
-    return ERR_NONE;
-  }
-  if (!s->running) {
-    forget_match(cs);
-    system_motors_resolve(cs);
-  }
-  uint32_t state = hal_mask_servo();
-  const bool waits = !s->running && moves_wait(cs);
-  if (!s->running) {
+  if (!s->settling) time_base_go_on(cs);
+}
+
+/* Servo and real-time tasks held off. */
+static void set_run(uint32_t cs, bool begins, bool single_step) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const bool waits = begins && moves_wait(cs);
+  if (begins) {
     s->matching = s->starting = s->motors != 0;
     s->waited = true;
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
@@ -165,6 +152,7 @@ error_t run_start(uint32_t cs, bool single_step) {
     s->slots_short = false;
     s->own_stop = s->own_stop && waits; /* behind the moves that are still to be made */
     s->ended = s->ended && waits;
+    s->failure = RUN_TIME_NONE;
     if (!s->next_valid) s->may_join = false;
   }
   s->end_block = s->quit_at_block = false;
@@ -173,10 +161,40 @@ error_t run_start(uint32_t cs, bool single_step) {
   s->stepping = single_step;
   s->continuous = !single_step;
   if (!s->own_stop) s->error = RUN_TIME_NONE;
-  if (!s->running) s->failure = RUN_TIME_NONE;
   s->running = true;
   cs_awake |= 1u << cs;
   cs_busy |= 1u << cs;
+}
+
+/* A program that ends or fails while this looks at it has had its start: it is not begun anew. */
+error_t run_start(uint32_t cs, bool single_step) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const bool begins = !s->running;
+  error_t error = check_return(cs);
+  if (error == ERR_NONE) error = check_program(cs);
+  if (error == ERR_NONE && begins) error = kinematic_program_check(cs);
+  if (error != ERR_NONE) return error;
+  uint32_t state = hal_mask_real_time();
+  const bool alone = ends_hold_alone(cs);
+  go_on(cs);
+  hal_unmask(state);
+  if (alone) return ERR_NONE;
+  if (!begins) segment_order(cs, LOOKAHEAD_FORWARD);
+  if (!begins && single_step) {
+    if (s->continuous) run_quit(cs); /* while a step waits for its move, one more changes nothing */
+    s->continuous = false;
+    return ERR_NONE;
+  }
+  if (begins) {
+    forget_match(cs);
+    system_motors_resolve(cs);
+  }
+  state = hal_mask_servo();
+  if (begins ? (jogs_busy & s->motors) != 0 : !s->running) {
+    hal_unmask(state);
+    return begins ? ERR_MOVE_IN_PROGRESS : ERR_NONE;
+  }
+  set_run(cs, begins, single_step);
   hal_unmask(state);
   if (s->motors == 0) (void)move_place(cs); /* what `/` has kept out */
   return ERR_NONE;
@@ -208,11 +226,16 @@ error_t run_match(uint32_t cs) {
   return ERR_NONE;
 }
 
+/* Stops hold the real-time task off: a program that ends or fails between the look and what is asked of it would be
+ * asked to come back where none has stopped it. */
 void run_quit(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  if (!s->running) return;
-  segment_stop(cs);
-  s->quit = s->must_return = true;
+  const uint32_t state = hal_mask_real_time();
+  if (s->running) {
+    segment_stop(cs);
+    s->quit = s->must_return = true;
+  }
+  hal_unmask(state);
 }
 
 void run_abort(uint32_t cs) {
@@ -238,22 +261,23 @@ void run_hold(uint32_t cs) {
 
 void run_stop_on_path(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = hal_mask_real_time();
   if (!s->running || s->held || !segment_looks(cs)) {
     run_hold(cs);
-    return;
+  } else {
+    segment_order(cs, LOOKAHEAD_STOP);
+    s->must_return = true;
   }
-  segment_order(cs, LOOKAHEAD_STOP);
-  s->must_return = true;
+  hal_unmask(state);
 }
 
 /* In the direction of an order: motors are back on the path. */
 static error_t go(uint32_t cs, enum lookahead_order order) {
-  struct coordinate_system* s = &coordinate_systems[cs];
   const error_t error = check_return(cs);
   if (error != ERR_NONE) return error;
-  if (s->held || segment_stands(cs)) system_motors_take(cs);
-  s->must_return = false;
-  time_base_go_on(cs);
+  const uint32_t state = hal_mask_real_time();
+  go_on(cs);
+  hal_unmask(state);
   segment_order(cs, order);
   return ERR_NONE;
 }
@@ -295,15 +319,14 @@ void run_by_state(uint32_t cs) {
 /* With motors and without segmentation it is Q (motion:5.6). */
 void run_end_block(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  if (!s->running) return;
-  if (s->motors != 0) {
+  const uint32_t state = s->motors != 0 ? hal_mask_real_time() : hal_mask_servo();
+  if (s->running && s->motors != 0) {
     run_quit(cs);
     s->quit_at_block = true;
-    return;
+  } else if (s->running) {
+    s->end_block = true;
+    move_take_back(cs);
   }
-  const uint32_t state = hal_mask_servo();
-  s->end_block = true;
-  move_take_back(cs);
   hal_unmask(state);
 }
 

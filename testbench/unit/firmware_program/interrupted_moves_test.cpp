@@ -12,14 +12,23 @@ namespace {
 
 using namespace moving_motors;
 
-// Counts that motor 1 has gone in one servo interrupt at most.
-double last_place, longest_step;
+// Counts that motor 1 has gone in one servo interrupt at most, and by how many more or less than in the one before.
+double last_place, last_step, longest_step, longest_change;
 
-void look_at_step(fake_task task) {
-  if (task != FAKE_SERVO) return;  // of the interrupt before it
+void look() {
   const double now = static_cast<double>(motors[0].trajectory) / kUnit;
   longest_step = std::max(longest_step, std::abs(now - last_place));
+  longest_change = std::max(longest_change, std::abs(now - last_place - last_step));
+  last_step = now - last_place;
   last_place = now;
+}
+
+bool is_due;  // a servo interrupt has begun whose step has not been looked at
+
+void look_at_step(fake_task task) {
+  if (task != FAKE_SERVO) return;
+  if (is_due) look();
+  is_due = true;
 }
 
 class InterruptsOfMoves : public MovingMotors {
@@ -28,7 +37,7 @@ class InterruptsOfMoves : public MovingMotors {
     MovingMotors::SetUp();
     fit({"1000X", "1000Y"});
     ASSERT_EQ(host("I115=1 I119=1 I120=20 I121=0 I122=20 I192=1 I215=1"), "");
-    longest_step = last_place = 0;
+    longest_step = longest_change = last_step = last_place = 0;
   }
   void TearDown() override {
     fake_interrupts_on_take(nullptr);
@@ -42,18 +51,19 @@ class InterruptsOfMoves : public MovingMotors {
   static void ticks(unsigned count) {
     for (; count > 0; --count) {
       platform::servo_ticks(1);
-      look_at_step(FAKE_SERVO);
+      look();
     }
   }
   // `action`, and interrupts in it.
   template <typename Action>
   static void interrupted(std::uint32_t seed, std::uint32_t gap, Action action) {
+    is_due = false;
     fake_interrupts_begin(seed, gap);
     fake_interrupts_on_take(look_at_step);
     action();
     fake_interrupts_on_take(nullptr);
     fake_interrupts_end();
-    look_at_step(FAKE_SERVO);
+    if (is_due) look();
   }
 };
 
@@ -72,7 +82,7 @@ TEST_F(InterruptsOfMoves, BehindPvtInMotionANextMoveIsInTimeOrLate) {
         ASSERT_FALSE(cs().next_valid);
         for (unsigned i = ticks_of(150) - 1 - seed % 4; i > 0; --i) {
           fake_task_run_servo();
-          look_at_step(FAKE_SERVO);
+          look();
         }
         interrupted(seed, 100 + seed % 5 * 300, [] { platform::real_time(); });
         ticks(ticks_of(700));
@@ -145,6 +155,78 @@ TEST_F(InterruptsOfMoves, AStopAmongSegmentsLeavesNoGap) {
       }
     }
   for (unsigned i = 0; i < 3; ++i) EXPECT_GT(corners[i], 5u) << i + 1;
+}
+
+// A program ends or fails between what a stop looks at and what it asks for: nothing is left of the stop.
+TEST_F(InterruptsOfMoves, AStopOfWhatHasEndedLeavesNothing) {
+  constexpr unsigned kSeeds = 25;
+  for (const char* line :
+       {"I5113=5 I5120=40 I5194=8388607 I5195=8388607", "DELETE GATHER", "&1DEFINE LOOKAHEAD 100,10"})
+    ASSERT_EQ(host(line), "");
+  store({"LINEAR ABS TM10 TA5 TS0", "X0.1"});
+  unsigned ended = 0, stopped = 0;
+  for (const bool fails : {false, true})
+    for (const char order : {'Q', '/', '\\'})
+      for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+        SCOPED_TRACE(std::string(1, order) + (fails ? ", fails" : "") + ", seed " + std::to_string(seed));
+        ASSERT_EQ(host("#1HMZ"), "");
+        ASSERT_EQ(host("%100"), "");
+        begin();
+        while (!fails && cs().active) ticks(1);
+        if (fails) {  // and settles at once, because nothing moves
+          ASSERT_EQ(host("%0"), "");
+          ticks(3);
+          cs().failure = RUN_TIME_BY_USER;
+        }
+        interrupted(seed, 1000, [&] {
+          fake_interrupts_soon();
+          fake_hal_slices_leave(false);
+          if (order == 'Q') run_quit(0);
+          if (order == '/') run_end_block(0);
+          if (order == '\\') run_stop_on_path(0);
+        });
+        (run_is_running(0) ? stopped : ended)++;
+        ticks(12);
+        ASSERT_FALSE(cs().quit);
+        if (order == '\\') { ASSERT_EQ(cs().must_return, cs().held || run_is_running(0)); }
+        ASSERT_EQ(cs().error, fails ? RUN_TIME_BY_USER : RUN_TIME_NONE);
+        ASSERT_EQ(host("A"), "");
+        ticks(12);
+      }
+  EXPECT_GT(ended, 20u);
+  EXPECT_GT(stopped, 3u);
+}
+
+// A program fails while R looks at it: its motors come to rest on their ramps, and it is not begun anew.
+TEST_F(InterruptsOfMoves, AStartTakesNoMotorFromItsRamp) {
+  ASSERT_EQ(host("I5195=20000"), "");
+  store({"LINEAR INC TM200 TA40 TS0", "X4", "X4"});
+  for (const bool held : {false, true})
+    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+      SCOPED_TRACE((held ? "held, seed " : "seed ") + std::to_string(seed));
+      ASSERT_EQ(host("#1HMZ"), "");
+      begin();
+      ticks(ticks_of(60));
+      longest_change = 0;
+      if (held) {
+        ASSERT_EQ(host("H"), "");
+        ticks(ticks_of(20));
+      }
+      cs().failure = RUN_TIME_BY_USER;
+      interrupted(seed, 10 * seed, [] {
+        fake_hal_slices_leave(false);
+        fake_interrupts_on_take([](fake_task task) {
+          look_at_step(task);
+          hal_request_real_time();
+        });
+        const error_t refused = run_start(0, false);
+        EXPECT_TRUE(refused == ERR_NONE || refused == ERR_MOVE_IN_PROGRESS);
+      });
+      ticks(ticks_of(100));
+      ASSERT_FALSE(run_is_running(0));
+      ASSERT_EQ(cs().error, RUN_TIME_BY_USER);
+      ASSERT_LT(longest_change, 1.5 * kTickMs * kTickMs) << "Ixx15, TA";
+    }
 }
 
 }  // namespace
