@@ -10,6 +10,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
+#include "firmware/language/statement_key.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog_plan.h"
 #include "firmware/motion/jog_state.h"
@@ -114,6 +115,12 @@ static bool is_ahead(uint32_t cs) {
   return p->lines >= CALCULATED_LINES_LIMIT;
 }
 
+/* Behind STOP, and BLOCKSTOP in a step, the rest of their line is for another start. */
+static bool stops_behind(const struct coordinate_system* s, const struct instruction* in) {
+  const bool block = in->operation == OP_STATEMENT && in->number == KEY_BLOCKSTOP;
+  return s->own_stop || (block && s->quit && s->stepping);
+}
+
 /* One word. False: nothing more at this interrupt. */
 static bool calculate_word(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
@@ -136,7 +143,7 @@ static bool calculate_word(uint32_t cs) {
   }
   if (executed == EXECUTED_LINE) line_ends(cs);
   if (executed == EXECUTED_LINE || executed == EXECUTED_END) s->sets_normal = false;
-  p->under_way = executed == EXECUTED_WORD && !s->own_stop; /* behind STOP the rest of its line is for another start */
+  p->under_way = executed == EXECUTED_WORD && !(of_motion && stops_behind(s, &in));
   if ((executed == EXECUTED_LINE || executed == EXECUTED_END) && s->pending_axes != 0) {
     if (motion_plan_line(cs) == EXECUTED_ERROR) executed = EXECUTED_ERROR;
   } else if (executed == EXECUTED_LINE) {

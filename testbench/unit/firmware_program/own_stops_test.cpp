@@ -124,6 +124,32 @@ TEST_F(OwnStops, TheRestOfTheLineOfAStopIsForAnotherStart) {
   EXPECT_EQ(p_variable_read(11), 2.0);
 }
 
+// Behind a BLOCKSTOP the same in a step; a run goes on.
+TEST_F(OwnStops, TheRestOfTheLineOfABlockIsForAnotherStep) {
+  for (const char* way : {"I5113=0", "I5113=5", "I5113=0 I5153=1"})
+    for (const char* start : {"S", "R"}) {
+      SCOPED_TRACE(way + std::string(start));
+      begin(way);
+      store({"LINEAR TM100 TA20 TS0", "BLOCKSTART X1 X2 BLOCKSTOP P11=1 X3", "BLOCKSTOP P11=2 X4"});
+      ASSERT_EQ(host("B1"), "");
+      if (way[std::string(way).size() - 1] == '1' && *start == 'S') {
+        ASSERT_EQ(host("S"), "");
+        stands_at(0);
+      }
+      ASSERT_EQ(host(start), "");
+      if (*start == 'S') {
+        stands_at(2000);
+        EXPECT_EQ(p_variable_read(11), 0.0);
+        ASSERT_EQ(host("S"), "");
+        stands_at(3000);
+        EXPECT_EQ(p_variable_read(11), 1.0);
+        ASSERT_EQ(host("S"), "");
+      }
+      stands_at(4000);
+      EXPECT_EQ(p_variable_read(11), 2.0);
+    }
+}
+
 // Moves that Q has left between it and the STOP are made first, by steps too.
 TEST_F(OwnStops, StopHoldsBehindMovesThatWait) {
   for (const char* start : {"R", "S"}) {
