@@ -157,6 +157,7 @@ static void set_run(uint32_t cs, bool begins, bool single_step) {
   }
   s->end_block = s->quit_at_block = false;
   s->quit = s->own_stop || (single_step && waits); /* what comes behind it is for another start; one of those alone */
+  if (single_step && waits) motion_programs[cs].under_way = false; /* so is the rest of a line that has begun */
   segment_go_on(cs, single_step && waits);
   s->stepping = single_step;
   s->continuous = !single_step;

@@ -99,6 +99,19 @@ TEST_F(WaitingMoves, BeginInTheirOwnTime) {
   EXPECT_EQ(motors[0].trajectory, 5000 * 3072);
 }
 
+// A step makes one of them: a line that had begun before the stop, and waits for them, is for the next one.
+TEST_F(WaitingMoves, AStepMakesOneThoughALineHasBegun) {
+  begin({"1000X"});
+  ASSERT_EQ(host("I119=1"), "");
+  stop({"X2", "X3 RAPID", "X4"});
+  for (const double end : {2000.0, 3000.0, 4000.0}) {
+    ASSERT_EQ(host("S"), "");
+    platform::servo_ticks(ticks_of(600));
+    EXPECT_FALSE(run_is_running(0));
+    expect_at({end});
+  }
+}
+
 // Home where it stands: an axis goes to its absolute place from there, or by its distance; one that no line names stays
 // at the place that has another name now.
 TEST_F(WaitingMoves, GoToAbsolutePlacesAndByDistances) {
