@@ -87,7 +87,7 @@ static error_t check_motors(uint32_t cs) {
   if (open) return ERR_OPEN_LOOP;
   if (limits) return ERR_BOTH_LIMITS;
   if (s->running && !s->held && !segment_stands(cs)) return ERR_NONE; /* what moves is the program's */
-  if (moving || (s->settling && s->motors != 0)) return ERR_MOVE_IN_PROGRESS;
+  if (moving) return ERR_MOVE_IN_PROGRESS;
   return (s->must_return || segment_stands(cs)) && system_motors_are_away(cs) ? ERR_MOVED : ERR_NONE;
 }
 

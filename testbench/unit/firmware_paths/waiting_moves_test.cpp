@@ -112,6 +112,21 @@ TEST_F(WaitingMoves, AStepMakesOneThoughALineHasBegun) {
   }
 }
 
+// Another program is another start, at once: they are dropped, and nothing moves for that.
+TEST_F(WaitingMoves, AnotherProgramBeginsOnTheSameLine) {
+  begin({"1000X"});
+  store({"X5"}, 2);
+  for (const char* start : {"B2R", "B2S"}) {
+    ASSERT_EQ(host("#1HMZ"), "");
+    stop({"X2", "X3"});
+    ASSERT_TRUE(segment_is_left(0));
+    ASSERT_EQ(host(start), "");
+    platform::servo_ticks(ticks_of(600));
+    EXPECT_FALSE(run_is_running(0));
+    expect_at({5000});
+  }
+}
+
 // Home where it stands: an axis goes to its absolute place from there, or by its distance; one that no line names stays
 // at the place that has another name now.
 TEST_F(WaitingMoves, GoToAbsolutePlacesAndByDistances) {
