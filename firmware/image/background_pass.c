@@ -46,6 +46,7 @@ void background_meanwhile(void) {
   sine_table_pass();
   image_checksum_pass();
   stack_watch_pass();
+  i_timers_pass();
   watchdog_reload();
   came_by = hal_cycles();
 }

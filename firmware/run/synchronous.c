@@ -8,6 +8,8 @@
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/m_variables.h"
 
+#define LONGEST_TIMER 8388607.0
+
 enum { MOVE_TIME = 0xFF }; /* an action: Isx11, not an M-variable */
 
 struct assignment {
@@ -115,6 +117,12 @@ static double time_of(uint32_t cs) {
   return m->kind == MOVE_OWN ? 0.0 : plan_milliseconds(m->time + m->acceleration);
 }
 
+/* A timer has 24 bits. */
+static double timer_of(double cycles) {
+  if (!(cycles > 0.0)) return 0.0;
+  return cycles < LONGEST_TIMER ? math_floor(cycles + 0.5) : LONGEST_TIMER;
+}
+
 /* No room: it is left out, the timer tells nothing (motion:8.3/3). */
 void synchronous_move_time(uint32_t cs) {
   const double ahead = cs_real(cs, ISX14_END_OF_MOVE_ANTICIPATION), time = time_of(cs);
@@ -129,7 +137,7 @@ void synchronous_move_time(uint32_t cs) {
   a->move = coordinate_systems[cs].planned;
   a->number = (uint16_t)cs;
   a->action = MOVE_TIME;
-  a->value = units > 0.0 ? math_floor(units / (double)coordinate_systems[cs].increment_full + 0.5) : 0.0;
+  a->value = timer_of(units / (double)coordinate_systems[cs].increment_full);
   filled |= 1u << cs;
   show(cs);
 }

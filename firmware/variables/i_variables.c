@@ -74,6 +74,16 @@ void i_timer_write(uint32_t number, int32_t value) {
   hal_unmask(state);
 }
 
+/* One a pass. */
+void i_timers_pass(void) {
+  static uint32_t turn; /* B */
+  const uint32_t number = i_cs(turn / ISX11_TIMERS_COUNT, ISX11_TIMERS) + turn % ISX11_TIMERS_COUNT;
+  const uint32_t state = hal_mask_real_time();
+  if (timer_read(number) == TIMER_LOWEST) i_timer_write(number, TIMER_LOWEST);
+  hal_unmask(state);
+  turn = (turn + 1u) % (COORDINATE_SYSTEMS * ISX11_TIMERS_COUNT);
+}
+
 /* I19 takes numbers of direction variables only; channel 1 has its own counter only. */
 static bool is_refused(struct i_place place, const struct i_entry* entry, uint32_t value) {
   if (entry->field == I_FIELD_CLOCK_SOURCE) return gate_ic_of_direction(value) == GATE_IC_COUNT;

@@ -14,7 +14,8 @@ void i_variable_write(uint32_t number,
                       double value); /* within the range of the table, honours I41, writes what stands behind it */
 /* Bits of `mask` of an integer variable that stands behind no hardware; the others are read in one piece with it. */
 void i_variable_write_part(uint32_t number, uint32_t mask, uint32_t bits);
-void i_timer_write(uint32_t number, int32_t value);    /* Isx11, Isx12 as words of memory: 24 bits, whatever I41 says */
+void i_timer_write(uint32_t number, int32_t value); /* Isx11, Isx12 as words of memory: 24 bits, whatever I41 says */
+void i_timers_pass(void); /* background: one that has run down stays so when the servo count has come round, 22 days */
 double i_variable_default(uint32_t number);            /* what `I{number}=*` assigns */
 void i_variable_set_open_memory_end(uint32_t address); /* I4908, which nobody else writes */
 bool i_variable_foreground_in_position(void);          /* I13, but of a Geo PMAC, where that is something else */

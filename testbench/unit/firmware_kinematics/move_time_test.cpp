@@ -121,4 +121,18 @@ TEST_F(MoveTime, LongerThanNothingAtAll) {
   EXPECT_LE(std::stod(host("I5111")), 0);
 }
 
+// A timer has 24 bits, a move up to 2^23 ms.
+TEST_F(MoveTime, LongerThanATimer) {
+  for (const auto& [isx14, i10] : {std::pair{"1", "3713991"}, {"8388607", "1000"}}) {
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host(std::string("I5111=77 I5114=") + isx14 + " I10=" + i10 + " %100"), "");
+    store({"TM5000000 TA20 TS0", "MOVETIME X1"});
+    ASSERT_EQ(host("&1B1R"), "");
+    for (int i = 0; i < 1000 && !cs().active; ++i) platform::servo_ticks(1);
+    platform::servo_ticks(3);
+    EXPECT_NEAR(std::stod(host("I5111")), 8388607, 10);
+  }
+}
+
 }  // namespace

@@ -15,6 +15,7 @@ extern "C" {
 
 extern "C" {
 #include "firmware/base/status.h"
+#include "firmware/kernel/tasks.h"
 }
 
 namespace {
@@ -209,6 +210,20 @@ TEST_F(LiveWords, TimersAreReadAndSet) {
 TEST_F(LiveWords, PartOfATimerIsSet) {
   ASSERT_EQ(host("I6611=$123456 M1->X:$2F15,4,8 M1=$FF"), "");
   EXPECT_EQ(host("RHX$2F15"), "123FF6");
+}
+
+// The servo count comes round after 2^32 interrupts: as long as none begins again what has run down does not either.
+TEST_F(LiveWords, TimersThatHaveRunDownStayThere) {
+  platform::servo_ticks(100);
+  ASSERT_EQ(host("I6611=1000 I6612=5"), "");
+  tasks_initialize();  // 2^32 - 100 interrupts later
+  EXPECT_EQ(host("I6611..6612"), "-8388608|-8388608");
+  platform::background(2 * COORDINATE_SYSTEMS);
+  platform::servo_ticks(110);
+  EXPECT_EQ(host("I6611..6612"), "-8388608|-8388608");
+  ASSERT_EQ(host("I6611=1000"), "");
+  platform::servo_ticks(10);
+  EXPECT_EQ(host("I6611..6612"), "990|-8388608");
 }
 
 // firmware:1.5: a lock is about assignments to I-variables; these are writes of memory.
