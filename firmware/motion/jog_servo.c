@@ -100,11 +100,13 @@ static __attribute__((noinline)) void search(uint32_t motor) {
 }
 
 /* A ramp ends as it begins: no change of the time base makes it slower, or quicker than the motor was. Who has gone at
- * the rate of the system goes on at that, whatever slews it. */
+ * the rate of the system goes on at that, whatever slews it; so does what leaves its path, in place of a ramp that has
+ * not begun, until it has. */
 static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t target) {
   const struct coordinate_system* s = &coordinate_systems[motors[motor].cs];
   const int32_t rate = jogs[motor].rate;
   if (jog_now(&jogs[motor])->aim == AIM_RAMP) return rate;
+  if (motors[motor].path == PATH_SYSTEM && s->increment != 0) return s->increment;
   return rate == s->increment_before && target == s->increment ? target : approach(rate, target, s->increment_slew);
 }
 

@@ -134,6 +134,30 @@ TEST_F(RampsAndTime, AnAbortEndsWhateverComesWithIt) {
       }
 }
 
+// A jog that is asked for with the abort takes the ramp's place: it leaves the path at the path's rate, where that is.
+TEST_F(RampsAndTime, AJogInPlaceOfTheRampLeavesThePathAsItGoes) {
+  for (const char* hold : {"H", "%150"})
+    for (const char* jog : {"#1J/", "#1J+", "#1J:500"}) {
+      SCOPED_TRACE(hold + std::string(jog));
+      begin(kPrograms[0]);
+      ASSERT_EQ(host("I5194=100000 I5195=100000 I192=2"), "");
+      ASSERT_EQ(host(hold), "");
+      ticks(12);
+      double last = place();
+      platform::servo_ticks(1);
+      double velocity = (place() - last) / kTickMs;
+      ASSERT_EQ(host("A"), "");
+      ASSERT_EQ(host(jog), "");
+      for (int tick = 1; tick < 300; ++tick) {
+        last = place();
+        platform::servo_ticks(1);
+        const double now = (place() - last) / kTickMs;
+        ASSERT_LE(std::abs(now - velocity), 40 * 100000.0 / platform::kDefaultI10 + 2.5 * kTickMs) << tick;
+        velocity = now;
+      }
+    }
+}
+
 // motion:5.1/1: its last step, too; a RAPID move made that at Isx94, which may be long.
 TEST_F(RampsAndTime, ARapidMoveIsBackAtItsSpeedWithTheHoldsEnd) {
   begin("RAPID X100");
