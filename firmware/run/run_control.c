@@ -265,7 +265,7 @@ void run_stop_on_path(uint32_t cs) {
   const uint32_t state = hal_mask_real_time();
   if (!s->running || s->held || !segment_looks(cs)) {
     run_hold(cs);
-  } else {
+  } else if (!segment_stands(cs)) { /* there its motors may be on their way: it goes on standing */
     segment_order(cs, LOOKAHEAD_STOP);
     s->must_return = true;
   }

@@ -268,4 +268,26 @@ TEST_F(LookaheadOrders, WhereItStandsMotorsMayBeJogged) {
   }
 }
 
+// One more stop leaves it standing: a motor that jogs there is stopped at once.
+TEST_F(LookaheadOrders, AStopWhereItStandsKeepsNoJogFromItsEnd) {
+  begin({"TM200 TA20 TS0", "X5", "X10"});
+  ASSERT_EQ(host("I119=1 I120=20 I121=0 I122=20 I192=1"), "");
+  ASSERT_EQ(host("&1B1R"), "");
+  wait_ms(130);
+  for (const char* stop : {"&1\\", "I5121=4"}) {
+    ASSERT_EQ(host(stop), "");
+    wait_ms(200);
+    ASSERT_EQ(host("#1J+"), "");
+    wait_ms(50);
+    ASSERT_EQ(host(stop), "");
+    EXPECT_EQ(host("#1J/"), "");
+    wait_ms(100);
+  }
+  ASSERT_EQ(host("#1J="), "");
+  wait_ms(400);
+  ASSERT_EQ(host("&1R"), "");
+  wait_ms(1200);
+  EXPECT_EQ(motors[0].trajectory, 10000 * 3072);
+}
+
 }  // namespace
