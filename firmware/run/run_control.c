@@ -149,6 +149,7 @@ static void set_run(uint32_t cs, bool begins, bool single_step) {
     s->waited = true;
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
     s->first = true;
+    s->corner = CORNER_NONE;
     s->slots_short = false;
     s->own_stop = s->own_stop && waits; /* behind the moves that are still to be made */
     s->ended = s->ended && waits;

@@ -226,6 +226,31 @@ TEST_F(StopsOfMotors, MotorsComeIntoPositionWithinIsx81) {
   }
 }
 
+// What waits at a corner when Q comes does not count at the corner behind the next start: neither the time for Isx81,
+// nor the one of Isx82.
+TEST_F(StopsOfMotors, ACornerWaitsAnewBehindAStart) {
+  for (const bool dwells : {true, false}) {
+    SCOPED_TRACE(dwells);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host(dwells ? "I5182=200" : "I5181=100 I188=40"), "");
+    ASSERT_EQ(host("I5192=1 I5113=5"), "");
+    store({"TM100 TA40 TS0 X1", "X2", "X3"});
+    begin();
+    ticks(180);
+    ASSERT_EQ(host("Q"), "");
+    ticks(700);
+    ASSERT_FALSE(run_is_running(0));
+    ASSERT_EQ(motors[0].trajectory, position(1000));
+    ASSERT_EQ(host("I128=8388607 R"), "");
+    ticks(180);
+    EXPECT_EQ(motors[0].trajectory, position(2000)) << "it waits: 200 and 41 real-time interrupts";
+    ticks(700);
+    EXPECT_EQ(motors[0].trajectory, position(3000));
+    EXPECT_EQ(host("RY$2014"), "0");
+  }
+}
+
 // motion:5.3: RAPID blends with nothing, so what comes behind one waits.
 TEST_F(StopsOfMotors, ARapidMoveIsWaitedForToo) {
   for (const char* second : {"RAPID X2", "LINEAR TM20 TA10 TS0 X2"}) {
