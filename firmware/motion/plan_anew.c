@@ -108,4 +108,5 @@ void plan_anew(uint32_t cs, double position[AXIS_COUNT]) {
     if (((changed >> i) & 1u) != 0) set_time(cs, path_of(p, i));
     if (i != 0 && ((changed | changed << 1) >> i & 1u) != 0) judge_corner(cs, i);
   }
+  path_direction(path_of(p, p->count - 1u), 1.0, coordinate_systems[cs].last_delta);
 }

@@ -154,7 +154,7 @@ static void set_run(uint32_t cs, bool begins, bool single_step) {
     s->own_stop = s->own_stop && waits; /* behind the moves that are still to be made */
     s->ended = s->ended && waits;
     s->failure = RUN_TIME_NONE;
-    if (!s->next_valid) s->may_join = false;
+    if (!waits) s->may_join = false;
   }
   s->end_block = s->quit_at_block = false;
   s->quit = s->own_stop || (single_step && waits); /* what comes behind it is for another start; one of those alone */

@@ -127,6 +127,32 @@ TEST_F(WaitingMoves, AnotherProgramBeginsOnTheSameLine) {
   }
 }
 
+// What is calculated behind them blends with the last one, as without the stop: by the direction that this has now.
+TEST_F(WaitingMoves, BlendWithWhatComesBehindThem) {
+  const struct {
+    Lines lines;
+    double last, end;
+  } programs[] = {{{"INC X1", "X1", "X1", "X1", "X1"}, 3000, 5000},
+                  {{"INC Y0.1", "Y0.1", "ABS X0.5", "X2"}, 500, 2000}};  // the third went down before HMZ
+  for (const auto& p : programs) {
+    SCOPED_TRACE(p.lines.front());
+    begin({"1000X", "1000Y"});
+    ASSERT_EQ(host("I5183=0.5"), "");
+    stop(p.lines);
+    ASSERT_EQ(paths[0].count, 3u);
+    ASSERT_EQ(host("#1HMZ"), "");
+    double before = at(1), slowest = 1e9;
+    run(
+        [&](double) {
+          if (std::abs(at(1) - p.last) < 100) slowest = std::min(slowest, (at(1) - before) / kTickMs);
+          before = at(1);
+        },
+        "&1R");
+    EXPECT_NEAR(slowest, 10, 0.1);
+    EXPECT_NEAR(at(1), p.end, 0.01);
+  }
+}
+
 // Home where it stands: an axis goes to its absolute place from there, or by its distance; one that no line names stays
 // at the place that has another name now.
 TEST_F(WaitingMoves, GoToAbsolutePlacesAndByDistances) {
