@@ -16,7 +16,7 @@ void time_base_command(uint32_t cs, int32_t command) {
   struct coordinate_system* s = &coordinate_systems[cs];
   const uint32_t state = hal_mask_servo();
   s->increment_command = command;
-  if (!s->held) time_base_slew(cs, command, ISX94_TIME_BASE_SLEW);
+  if (!s->held && !s->settling) time_base_slew(cs, command, ISX94_TIME_BASE_SLEW);
   hal_unmask(state);
 }
 

@@ -9,7 +9,8 @@
 #include "firmware/variables/i_variables.h"
 
 void time_base_slew(uint32_t cs, int32_t target, enum i_name rate); /* servo and real-time tasks held off */
-/* From the next servo cycle on, at Isx94; while H holds the system it is kept for its end. */
+/* From the next servo cycle on, at Isx94; while H holds the system, or motors are about to leave the path, it is kept
+ * for the end of that. */
 void time_base_command(uint32_t cs, int32_t command);
 void time_base_stay(uint32_t cs);  /* as it is: motors are about to leave the path, which must not quicken for that */
 void time_base_go_on(uint32_t cs); /* to what is commanded, behind that or a hold, which ends; the latter at Isx95 */

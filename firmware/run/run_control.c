@@ -251,10 +251,11 @@ void run_abort(uint32_t cs) {
   hal_unmask(state);
 }
 
+/* What leaves its path after an abort is not held: its ramps are planned for the rate that there is. */
 void run_hold(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   uint32_t state = hal_mask_servo();
-  if (!s->held && (s->running || s->active)) {
+  if (!s->held && !s->settling && (s->running || s->active)) {
     s->held = s->must_return = true;
     time_base_slew(cs, 0, ISX95_FEED_HOLD_SLEW);
   }

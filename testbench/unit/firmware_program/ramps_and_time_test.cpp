@@ -2,6 +2,10 @@
 // whatever is ordered with them.
 #include "testbench/unit/firmware_program/moving_motors.h"
 
+extern "C" {
+#include "testbench/unit/firmware_platform/fake_tasks.h"
+}
+
 namespace {
 
 using namespace moving_motors;
@@ -132,6 +136,33 @@ TEST_F(RampsAndTime, AnAbortEndsWhateverComesWithIt) {
         EXPECT_FALSE(cs().held);
         EXPECT_EQ(host("&1B1R"), "");
       }
+}
+
+// What is ordered until the ramp begins changes no rate: it begins at the velocity that it was planned for.
+TEST_F(RampsAndTime, AnOrderBeforeTheRampBeginsQuickensNothing) {
+  for (const char* order : {"H", "<", "%50", "%200", "WX$2000,0"}) {
+    SCOPED_TRACE(order);
+    begin(kPrograms[0]);
+    ASSERT_EQ(host("I5194=200000 I5195=200000"), "");
+    ASSERT_EQ(host("A"), "");
+    fake_task_run_servo();
+    ASSERT_EQ(host(order), "");
+    fake_task_run_servo();
+    double velocity = 40, last = place();
+    for (int tick = 1; tick < 400; ++tick) {
+      if (tick == 4) platform::real_time();  // late
+      fake_task_run_servo();
+      const double now = (place() - last) / kTickMs;
+      ASSERT_LE(now, velocity + 0.01) << tick;
+      ASSERT_GE(now, velocity - 4.4 * kTickMs) << tick;  // Ixx15 at 200 %
+      if (tick > 10) platform::real_time();
+      velocity = now;
+      last = place();
+    }
+    EXPECT_EQ(velocity, 0.0);
+    EXPECT_FALSE(cs().settling || cs().held);
+    EXPECT_EQ(cs().increment_target, cs().increment_command) << "it counts behind that";
+  }
 }
 
 // A jog that is asked for with the abort takes the ramp's place: it leaves the path at the path's rate, where that is.
