@@ -321,6 +321,11 @@ bool lookahead_is_stored(uint32_t cs, const struct lookahead_piece* piece) {
   return piece->segment >= look_oldest(&looks[cs]);
 }
 
+bool lookahead_begins_at_rest(uint32_t cs, const struct lookahead_piece* piece) {
+  const uint32_t knot = piece->first == PIECE_PARTS ? piece->segment + 1u : piece->segment;
+  return piece->rate < SLOWEST || (piece->first % PIECE_PARTS == 0 && is_free(&looks[cs], knot));
+}
+
 void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece) {
   struct look* l = &looks[cs];
   l->front = piece->first == PIECE_PARTS ? piece->segment + 1u : piece->segment;

@@ -13,6 +13,7 @@ bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece);
 bool lookahead_sweep(uint32_t cs, bool hurry); /* a step of it; false: nothing was to be done */
 bool lookahead_is_sweeping(uint32_t cs);
 bool lookahead_is_stored(uint32_t cs, const struct lookahead_piece* piece); /* its points have not been written over */
+bool lookahead_begins_at_rest(uint32_t cs, const struct lookahead_piece* piece);
 /* The servo task has not begun `piece` and what came behind it, and will not: the front is there again. */
 void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece);
 void lookahead_do(uint32_t cs, enum lookahead_order order); /* in either direction it stops first if it has to turn */

@@ -21,15 +21,30 @@ void segment_ring_line(uint32_t cs, struct program_trace* trace) {
   trace->places[trace->depth] = line->last;
 }
 
+bool segment_ring_is_dry(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  return sequences[cs].handed && !s->next_valid && !s->active && piece_ring_is_empty(&s->ring);
+}
+
+/* The servo task has come to the end of what it had while this was made: on the way, not where it was to stand. */
+static bool is_late(uint32_t cs) {
+  const uint32_t next = coordinate_systems[cs].ring.added % PIECES;
+  if (sequences[cs].unhanded == 0 || !segment_ring_is_dry(cs)) return false;
+  return !sequences[cs].looks || !lookahead_begins_at_rest(cs, &looked[cs][next]);
+}
+
 void segment_ring_hand_over(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   const uint32_t state = hal_mask_servo();
-  if (!q->handed)
+  const bool late = is_late(cs);
+  if (late)
+    s->failure = RUN_TIME_LATE;
+  else if (!q->handed)
     s->next_valid = s->placed = true;
   else if (q->unhanded != 0 && !s->placed)
     s->active = true; /* it may have stood: who looks before the servo task does must not take it for over */
-  for (; q->unhanded != 0; q->unhanded--) piece_ring_add(&s->ring);
+  for (; q->unhanded != 0 && !late; q->unhanded--) piece_ring_add(&s->ring);
   hal_unmask(state);
   q->handed = true;
   s->first = false;
@@ -93,9 +108,4 @@ void segment_ring_take_back(uint32_t cs) {
   hal_unmask(state);
   sequences[cs].unhanded = kept;
   if (number != end) lookahead_take_back(cs, &looked[cs][number % PIECES]);
-}
-
-bool segment_ring_is_dry(uint32_t cs) {
-  const struct coordinate_system* s = &coordinate_systems[cs];
-  return sequences[cs].handed && !s->next_valid && !s->active && piece_ring_is_empty(&s->ring);
 }

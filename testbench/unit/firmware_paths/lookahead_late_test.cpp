@@ -33,6 +33,33 @@ TEST_F(LookaheadLate, WhatIsLateOnTheWayIsARunTimeError) {
   }
 }
 
+// The same while the real-time task makes the next segment, whose work is left meanwhile: what comes then is not
+// executed from a stand at full speed.
+TEST_F(LookaheadLate, WhatIsLateWhileItIsMadeIsARunTimeError) {
+  for (const char* isx20 : {"0", "1", "200"})
+    for (unsigned left = 1; left < 34; left += 4) {
+      SCOPED_TRACE(isx20 + std::string(", left at pause ") + std::to_string(left));
+      platform::power_up();
+      fit({"1000X"});
+      ASSERT_EQ(host(std::string("I5113=5 I116=50 I117=1 I5120=") + isx20), "");
+      ASSERT_EQ(host("&1DEFINE LOOKAHEAD 300,0"), "");
+      store({"TM1200 TA20 TS0", "X30"});
+      ASSERT_EQ(host("&1B1R"), "");
+      platform::servo_ticks(ticks_of(700));
+      while (cs().ring.added - cs().ring.executing > 1) system_path_servo();
+      unsigned pauses = 0;
+      platform::real_time_in_slices([&] {
+        if (++pauses == left)
+          while (cs().active) system_path_servo();
+      });
+      ASSERT_GE(pauses, left);
+      const double stands = at(1);
+      platform::servo_ticks(40);
+      EXPECT_EQ(cs().error, RUN_TIME_LATE);
+      EXPECT_EQ(at(1), stands);
+    }
+}
+
 // At rest nothing is late: where `\\` has led it, at the oldest segment, and at the end.
 TEST_F(LookaheadLate, WhatIsLateAtRestIsNoError) {
   for (const char* isx20 : {"1", "40"}) {
