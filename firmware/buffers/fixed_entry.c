@@ -4,6 +4,7 @@
 #include "firmware/buffers/program_links.h"
 #include "firmware/language/lexer.h"
 #include "firmware/language/lister.h"
+#include "firmware/language/statement_key.h"
 
 /* A word is listed with so many characters more than it took at most: the 0 of `0.5`, a blank behind `RET`, those
  * around an inner AND or OR, the decimals of `DISPLAY1,8.0,P1`, brackets in `-(-5)`. */
@@ -20,9 +21,28 @@ static void read_structure(void) {
   while (program_links_line(&structure, fixed_program_opened(), &error) != 0) {}
 }
 
+/* RETURN as CLOSE appends it. Its value is not listed: it tells this one from a RETURN of the lines, which stays. */
+static word48_t closing_return(void) {
+  const struct instruction in = {OP_STATEMENT, 0, KEY_RETURN, 1.0};
+  return word_encode(&in) | WORD_START_OF_LINE;
+}
+
+static void append_return(void) {
+  const word48_t word = closing_return();
+  if (fixed_program_opened()->words == 0 || structure.depth != 0 || structure.returns) return;
+  (void)fixed_program_append(&word, 1); /* without room for it the program ends there all the same */
+}
+
+static void remove_return(void) {
+  const struct fixed_program* program = fixed_program_opened();
+  if (program->words != 0 && fixed_program_word(program, program->words - 1u) == closing_return())
+    fixed_program_drop_last();
+}
+
 error_t fixed_entry_begin(enum fixed_kind kind, uint32_t number) {
   const error_t error = fixed_program_open(kind, number);
   if (error != ERR_NONE) return error;
+  remove_return();
   read_structure();
   buffer_request_fixed_opened();
   return ERR_NONE;
@@ -65,6 +85,7 @@ void fixed_entry_clear(void) {
 }
 
 error_t fixed_entry_end(void) {
+  append_return();
   fixed_program_close();
   buffer_request_fixed_closed();
   return structure.depth == 0 ? ERR_NONE : ERR_STRUCTURE;

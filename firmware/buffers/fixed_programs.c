@@ -151,11 +151,15 @@ error_t fixed_program_append(const word48_t* words, uint32_t count) {
   return ERR_NONE;
 }
 
-void fixed_program_clear(void) {
+static void shorten(uint32_t words) {
   struct fixed_program* program = &fixed.programs[fixed.count - 1u];
-  (void)region_resize_fixed(program->base); /* that is less */
-  program->words = 0;
+  (void)region_resize_fixed(program->base + words); /* that is less */
+  program->words = words;
 }
+
+void fixed_program_drop_last(void) { shorten(fixed.programs[fixed.count - 1u].words - 1u); }
+
+void fixed_program_clear(void) { shorten(0); }
 
 void fixed_program_close(void) {
   begin_change(); /* its words have changed too */

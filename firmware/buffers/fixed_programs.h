@@ -46,6 +46,7 @@ void fixed_program_set_linked(const struct fixed_program* program);
 error_t fixed_program_open(enum fixed_kind kind, uint32_t number); /* ERR006: no more programs */
 const struct fixed_program* fixed_program_opened(void);            /* 0: none */
 error_t fixed_program_append(const word48_t* words, uint32_t count);
+void fixed_program_drop_last(void); /* its last word */
 void fixed_program_clear(void);
 void fixed_program_close(void); /* an empty one is gone */
 

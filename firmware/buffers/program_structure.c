@@ -120,6 +120,7 @@ error_t program_structure_line(struct program_structure* structure, bool motion,
     if (error != ERR_NONE) return error;
     if (in.operation >= OP_PUSH && in.operation <= OP_APPLY) continue;
     s.condition_may_follow = in.operation == OP_CONDITION;
+    s.returns = in.operation == OP_STATEMENT && in.number == KEY_RETURN;
     scan.after_one_line = false;
     if (in.operation != OP_CONDITION || (in.number & CONDITION_MORE) == 0) from = s.offset + at;
   }

@@ -29,6 +29,7 @@ struct program_structure {
   uint16_t* links;           /* of the program, written when not 0 */
   bool else_may_follow;      /* the line before was a one-line IF */
   bool condition_may_follow; /* the statement before was a condition */
+  bool returns;              /* the last statement is RETURN */
 };
 
 /* `links`: 0 while lines are entered. */

@@ -122,7 +122,8 @@ void refusals(BenchContext& b) {
   b.expect("X1", "");
   b.expect("LIST", "X1");
   b.expect("CLOSE", "");
-  b.expect("LIST PROG 9,1", "ERR003");  // its only word is at 0
+  b.expect("LIST PROG 9", "X1|RET");    // as CLOSE has left it
+  b.expect("LIST PROG 9,2", "ERR003");  // its last word is at 1
   b.expect("LIST PROG 9,0,0", "");
   b.expect("LIST", "ERR003");
 }

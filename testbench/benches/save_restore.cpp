@@ -32,8 +32,8 @@ Content make(std::mt19937_64& random) {
            fmt::format("OPEN PROG 900 CLEAR X{}Y{} CLOSE", x, q),
            fmt::format("OPEN PLC 17 CLEAR P1=P{}*{} CLOSE", f, q), fmt::format("&2OPEN FORWARD CLEAR Q7=P{} CLOSE", f)},
           {fmt::format("{}|{}.5", i17, speed), fmt::format("{}.25|-{}", p, p), fmt::format("{}", q),
-           fmt::format("X:${:X},4,8", address), fmt::format("{}Y+{}", scale, q), fmt::format("X{}Y{}", x, q),
-           fmt::format("P1=P{}*{}", f, q), fmt::format("Q7=P{}", f)}};
+           fmt::format("X:${:X},4,8", address), fmt::format("{}Y+{}", scale, q), fmt::format("X{}Y{}|RET", x, q),
+           fmt::format("P1=P{}*{}|RET", f, q), fmt::format("Q7=P{}|RET", f)}};
 }
 
 class SaveRestore {
@@ -165,7 +165,7 @@ class SaveRestore {
     b_.expect("OPEN PLC 15", "ERR002");
     b_.expect("PASSWORD=open sesame", "ERR002");
     b_.expect("PASSWORD=Open sesame", "");
-    b_.expect("LIST PROG 1000", "X1");
+    b_.expect("LIST PROG 1000", "X1|RET");
     const std::string p10 = b_.ask("P10");
     b_.link.command("$$$***");
     b_.expect("I17 P10", "10|" + p10);

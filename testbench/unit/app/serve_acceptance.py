@@ -83,8 +83,8 @@ def serve_python_client():
                 check(len(client.values(f"{name}0..{count - 1}")) == count, name)
             check(len(client.values("M0..8191->")) == 8192, "definitions")
             check(client.write_lines(lines) is None, "download")
-            check(client.values("LIST PROG5") == ["RPD X10Y20", "DWE20"], "upload of a program")
-            check(client.values("LIST PLC3") == ["P7=P7+1"], "upload of a PLC")
+            check(client.values("LIST PROG5") == ["RPD X10Y20", "DWE20", "RET"], "upload of a program")
+            check(client.values("LIST PLC3") == ["P7=P7+1", "RET"], "upload of a PLC")
             check(client.write_lines(["P1=1", "P2=", "P3=3"]) == (2, 3), "the line that is refused")
             # No amplifier is connected, and the fault input reads 0 here.
             for jog in ("I124=$800001", "#1J+", "#1J-", "#1J=100", "#1J^5", "#1J/", "#1K"):
@@ -99,7 +99,7 @@ def serve_python_client():
             check(client.request(0x40, 0xBF, data=b"$$$") in (b"\x06", b"\n"), "$$$ has an answer")
         with server.client() as client:
             check(client.values("I16 P100") == ["7", "2.5"], "what was SAVEd, on a new connection")
-            check(client.values("LIST PROG5") == ["RPD X10Y20", "DWE20"], "and the program")
+            check(client.values("LIST PROG5") == ["RPD X10Y20", "DWE20", "RET"], "and the program")
 
 
 def serve_c_driver():

@@ -18,10 +18,10 @@ void enter_programs(Controller& c) {
 }
 
 void expect_protected(Controller& c, bool is_protected) {
-  const std::string listed = is_protected ? "ERR002" : "P1=1", opened = is_protected ? "ERR002" : "";
+  const std::string listed = is_protected ? "ERR002" : "P1=1|RET", opened = is_protected ? "ERR002" : "";
   for (const char* name : {"PROG 1000", "PROG 32767", "PLC 0", "PLC 15", "FORWARD", "INVERSE"}) {
     EXPECT_EQ(c.line(std::string("&2LIST ") + name), listed) << name;
-    EXPECT_EQ(c.line(std::string("LIST ") + name + ",0,9"), is_protected ? "ERR002" : "0:P1=1") << name;
+    EXPECT_EQ(c.line(std::string("LIST ") + name + ",0,9"), is_protected ? "ERR002" : "0:P1=1|1:RET") << name;
     EXPECT_EQ(c.line(std::string("OPEN ") + name), opened) << name;
     EXPECT_EQ(c.line("LIST"), is_protected ? "ERR003" : "P1=1") << "open: " << name;
     EXPECT_EQ(c.line("CLOSE"), "");
@@ -29,7 +29,7 @@ void expect_protected(Controller& c, bool is_protected) {
   EXPECT_EQ(c.line("&1B1000 LIST PC"), is_protected ? "ERR002" : "0:P1=1") << "where a system points";
   EXPECT_EQ(c.line("&1B999 LIST PC"), "0:P1=1");
   for (const char* name : {"PROG 999", "PLC 16"}) {  // never protected
-    EXPECT_EQ(c.line(std::string("LIST ") + name), "P1=1") << name;
+    EXPECT_EQ(c.line(std::string("LIST ") + name), "P1=1|RET") << name;
     EXPECT_EQ(c.line(std::string("OPEN ") + name), "") << name;
     EXPECT_EQ(c.line("CLOSE"), "");
   }

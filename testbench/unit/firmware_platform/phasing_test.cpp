@@ -107,7 +107,7 @@ TEST_F(Phasing, SetphaseTakesIxx75AtOnce) {
   EXPECT_EQ(c_.line("SETPHASE33"), "ERR003");
   EXPECT_EQ(c_.line("SETPHASE"), "ERR003");
   set("OPEN PLC 1 CLEAR SETPHASE2 DISABLE PLC 1 CLOSE I5=3 ENABLE PLC 1");
-  EXPECT_EQ(c_.line("LIST PLC 1"), "SETPHASE2|DISPLC1");
+  EXPECT_EQ(c_.line("LIST PLC 1"), "SETPHASE2|DISPLC1|RET");
   c_.servo(20);
   set("");
   phase();

@@ -68,18 +68,19 @@ Content random_content(unsigned seed, unsigned size) {
     const std::string number = std::to_string(1 + i * 100 + below(100)), plc = std::to_string(i % 32);
     content.set("OPEN PROG " + number + " CLEAR " + move);
     content.set("CLOSE");
-    content.expect("LIST PROG " + number, move);
+    content.expect("LIST PROG " + number, move + "|RET");
     const std::string formula = "P1=P" + std::to_string(below(8192)) + "*2";
     content.set("OPEN PLC " + plc + " CLEAR " + formula);
     content.set("CLOSE");
-    if (i + 32 >= size) content.expect("LIST PLC " + plc, formula);
+    if (i + 32 >= size) content.expect("LIST PLC " + plc, formula + "|RET");
   }
   const unsigned cs = 1 + below(16);
   content.set(text("&%luOPEN FORWARD CLEAR Q7=P%lu", cs, below(8192)));
-  content.expect(text("&%luLIST FORWARD", cs), content.lines.back().substr(content.lines.back().find("Q7")));
+  content.expect(text("&%luLIST FORWARD", cs), content.lines.back().substr(content.lines.back().find("Q7")) + "|RET");
   content.set("CLOSE");
   content.set(text("&%luOPEN INVERSE CLEAR P%lu=Q1", cs, below(8192)));
-  content.expect(text("&%luLIST INVERSE", cs), content.lines.back().substr(content.lines.back().find("CLEAR ") + 6));
+  content.expect(text("&%luLIST INVERSE", cs),
+                 content.lines.back().substr(content.lines.back().find("CLEAR ") + 6) + "|RET");
   content.set("CLOSE");
   return content;
 }
@@ -208,7 +209,7 @@ TEST(SavedContent, PowerCutAtAnyWordLeavesAllOfTheOldOrAllOfTheNew) {
   };
   const auto expected = [](unsigned long n) {
     const std::string number = std::to_string(n), scale = n == 1 ? "" : number;
-    return number + "|" + number + "|" + text("X:$1%04lX,0,4", n) + "|" + scale + "X|X" + number;
+    return number + "|" + number + "|" + text("X:$1%04lX,0,4", n) + "|" + scale + "X|X" + number + "|RET";
   };
   make(1);
   restart(c);  // as before each of those that follow

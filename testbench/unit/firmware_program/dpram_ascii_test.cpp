@@ -160,7 +160,7 @@ TEST_F(DpramAscii, TheOpenBufferIsThatOfThePortThatHasOpenedIt) {
   EXPECT_EQ(by_port("CLOSE"), "\x06") << "of another port";
   EXPECT_EQ(ram_host.ask("X30"), "");
   EXPECT_EQ(ram_host.ask("CLOSE"), "");
-  EXPECT_EQ(host("LIST PROG 5"), "X10|X30");
+  EXPECT_EQ(host("LIST PROG 5"), "X10|X30|RET");
 }
 
 // A port that is off can close nothing any more: others may (host-bus:6.6/8).
@@ -173,7 +173,7 @@ TEST_F(DpramAscii, TheBufferOfAPortThatIsOffIsClosedByAnyCloseAndTakesNoText) {
     EXPECT_EQ(by_port("X20"), "\aERR005\r") << off;
     EXPECT_EQ(by_port("CLOSE"), "\x06") << off;
     EXPECT_EQ(by_port("OPEN PROG 6 CLEAR CLOSE"), "\x06") << off;
-    EXPECT_EQ(host("LIST PROG 5"), "X10") << off;
+    EXPECT_EQ(host("LIST PROG 5"), "X10|RET") << off;
     ASSERT_EQ(host("I58=1 I24=*"), "");
     background(1);
   }

@@ -73,8 +73,8 @@ TEST_F(DriverPolls, CommasThatNoNumberFollowsDivideQueriesThatTakeOne) {
   ASSERT_EQ(host("CLOSE B1"), "");
   EXPECT_EQ(host_lines("LIST PC,CID"), (Lines{"0:P1=1X1", "603382"}));
   EXPECT_EQ(host_lines("LIST PC,2,P5"), (Lines{"0:P1=1X1", "2:P2=2", "5"}));
-  EXPECT_EQ(host_lines("LIST PROG 1,P5"), (Lines{"P1=1X1", "P2=2", "5"}));
-  EXPECT_EQ(host_lines("LIST PROG 1,2,P5"), (Lines{"2:P2=2", "5"}));
+  EXPECT_EQ(host_lines("LIST PROG 1,P5"), (Lines{"P1=1X1", "P2=2", "RET", "5"}));
+  EXPECT_EQ(host_lines("LIST PROG 1,2,P5"), (Lines{"2:P2=2", "3:RET", "5"}));
   ASSERT_EQ(host("DEF ROT 50 B0"), "");
   EXPECT_EQ(host_lines("LIST PC,P5"), (Lines{"5"})) << "a buffer without a line";
 }

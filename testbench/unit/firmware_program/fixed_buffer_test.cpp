@@ -73,23 +73,23 @@ TEST_F(FixedBuffer, AProgramGrowsWhereverItLies) {
   ASSERT_EQ(host("X22"), "");
   ASSERT_EQ(host("CLOSE OPEN PROG 1 CLEAR CLOSE"), "");
   EXPECT_EQ(host("LIST PROG 1"), "ERR003");
-  EXPECT_EQ(host("LIST PROG 2"), "X21|X22");
-  EXPECT_EQ(host("LIST PROG 3"), "X31");
-  EXPECT_EQ(host("LIST PLC 1"), "P1=1");
-  EXPECT_EQ(open_words(), 26624u - 4u);
+  EXPECT_EQ(host("LIST PROG 2"), "X21|X22|RET");
+  EXPECT_EQ(host("LIST PROG 3"), "X31|RET");
+  EXPECT_EQ(host("LIST PLC 1"), "P1=1|RET");
+  EXPECT_EQ(open_words(), 26624u - 7u);
 }
 
 TEST_F(FixedBuffer, NothingIsStoredOfALineWithoutRoom) {
   ASSERT_EQ(host("OPEN PROG 1"), "");
   ASSERT_EQ(host("X1 Y1 Z1"), "");
-  ASSERT_EQ(host("CLOSE DEF GAT CLOSE OPEN PROG 1"), "");
-  EXPECT_EQ(host("X2"), "ERR006");
+  ASSERT_EQ(host("CLOSE DEF GAT CLOSE OPEN PROG 1"), "");  // its RETURN is one word
+  EXPECT_EQ(host("X2 Y2"), "ERR006");
   ASSERT_EQ(host("CLOSE DEL GAT &2DEF ROT 26620 OPEN PROG 1"), "");  // one word is open
   EXPECT_EQ(host("X2 Y2"), "ERR006");
   EXPECT_EQ(host("X2"), "");
   EXPECT_EQ(host("X3"), "ERR006");
   ASSERT_EQ(host("CLOSE"), "");
-  EXPECT_EQ(host("LIST PROG 1"), "X1Y1Z1|X2");
+  EXPECT_EQ(host("LIST PROG 1"), "X1Y1Z1|X2");  // nor a RETURN
 }
 
 TEST_F(FixedBuffer, MemoryCanBeFilledToTheLastWord) {
@@ -130,13 +130,13 @@ TEST_F(FixedBuffer, EachProgramKeepsItsLinesWhenAllAreThere) {
   };
   for (std::size_t i = 0; i < names.size(); ++i) ASSERT_EQ(host("OPEN " + names[i] + " " + line(i) + " CLOSE"), "");
   std::string nothing, lines;
-  for (int i = 0; i < 32; ++i) nothing += "/", lines += "P1=1/";
+  for (int i = 0; i < 32; ++i) nothing += "/", lines += "P1=1|RET/";
   ASSERT_EQ(kinematic("OPEN"), nothing);
   for (int turn = 0; turn < 3; ++turn) {
     ASSERT_EQ(host("OPEN " + names[static_cast<std::size_t>(turn)] + " P9=9 CLOSE"), "");
     for (std::size_t i = 0; i < names.size(); ++i) {
       const bool added = i <= static_cast<std::size_t>(turn);
-      ASSERT_EQ(host("LIST " + names[i]), line(i) + (added && i < 224 ? "|P9=9" : "")) << names[i];
+      ASSERT_EQ(host("LIST " + names[i]), line(i) + (added && i < 224 ? "|P9=9" : "") + "|RET") << names[i];
     }
     EXPECT_EQ(kinematic("LIST"), lines);
   }
@@ -168,7 +168,7 @@ TEST_F(FixedBuffer, EmptyProgramsTakeNoPlace) {
   for (int i = 1; i <= 300; ++i)
     ASSERT_EQ(host("OPEN PROG " + std::to_string(i) + (i % 2 == 0 ? " X1 CLEAR" : "") + " CLOSE"), "") << i;
   ASSERT_EQ(host("OPEN PROG 1 X1 CLOSE"), "");
-  EXPECT_EQ(host("LIST PROG 1"), "X1");
+  EXPECT_EQ(host("LIST PROG 1"), "X1|RET");
 }
 
 TEST_F(FixedBuffer, StatementsBelongToTheirKindOfProgram) {
@@ -339,6 +339,56 @@ TEST_F(FixedBuffer, AProgramThatIsAddedToKeepsItsStructure) {
   EXPECT_EQ(host("CLOSE"), "");
 }
 
+// firmware:4.3/4: what CLOSE has appended OPEN takes away, a RETURN of the lines it does not: subroutines are added
+// file by file.
+TEST_F(FixedBuffer, CloseAppendsAReturnThatOpenTakesAway) {
+  for (const std::string name : {"PROG 1", "PLC 1", "FORWARD", "INVERSE"}) {
+    ASSERT_EQ(host("OPEN " + name + " P1=1 CLOSE"), "");
+    EXPECT_EQ(host("LIST " + name + ",0"), "0:P1=1|1:RET");
+    ASSERT_EQ(host("OPEN " + name), "");
+    EXPECT_EQ(host("LIST"), "P1=1") << name;
+    ASSERT_EQ(host("P2=2"), "");
+    ASSERT_EQ(host("RETURN"), "");
+    ASSERT_EQ(host("CLOSE"), "");
+    EXPECT_EQ(host("LIST " + name), "P1=1|P2=2|RET") << name << ": the lines end with one";
+    ASSERT_EQ(host("OPEN " + name), "");
+    ASSERT_EQ(host("P3=3 CLOSE"), "");
+    EXPECT_EQ(host("LIST " + name), "P1=1|P2=2|RET|P3=3|RET") << name;
+    ASSERT_EQ(host("OPEN " + name + " CLOSE"), "");
+    EXPECT_EQ(host("LIST " + name), "P1=1|P2=2|RET|P3=3|RET") << name << ": as it was";
+    ASSERT_EQ(host("OPEN " + name + " CLEAR CLOSE"), "");
+    EXPECT_EQ(host("LIST " + name), "ERR003") << name << ": nothing ends with nothing";
+  }
+  EXPECT_EQ(open_words(), 26624u);
+}
+
+TEST_F(FixedBuffer, TheAppendedReturnOutlivesSave) {
+  ASSERT_EQ(host("OPEN PROG 1 N1 X1 CLOSE SAVE"), "");
+  platform::reset();
+  ASSERT_EQ(host("OPEN PROG 1 X2 CLOSE"), "");
+  EXPECT_EQ(host("LIST PROG 1"), "N1X1|X2|RET");
+}
+
+TEST_F(FixedBuffer, NoReturnIsAppendedInAnOpenBlock) {
+  ASSERT_EQ(host("OPEN PLC 1 WHILE(P1=1) P1=2"), "");
+  ASSERT_EQ(host("CLOSE"), "ERR009");
+  EXPECT_EQ(host("LIST PLC 1"), "WHILE(P1=1)|P1=2");
+  ASSERT_EQ(host("OPEN PLC 1 ENDWHILE CLOSE"), "");
+  EXPECT_EQ(host("LIST PLC 1"), "WHILE(P1=1)|P1=2|ENDW|RET");
+}
+
+// The words of a text or of a double may look like anything.
+TEST_F(FixedBuffer, OnlyAStatementIsTheAppendedReturn) {
+  const char* const lines[] = {"SEND\"RETURN\"", "DWELL0.1", "P1=0.1", "IF(P1=1)RETURN"};
+  for (const std::string line : lines) {
+    ASSERT_EQ(host("OPEN PROG 1 CLEAR " + line), "");
+    const std::string listed = host("LIST");
+    ASSERT_EQ(host("CLOSE OPEN PROG 1"), "");
+    EXPECT_EQ(host("LIST"), listed);
+    ASSERT_EQ(host("CLOSE"), "");
+  }
+}
+
 TEST_F(FixedBuffer, LabelsAreDecimal) {
   ASSERT_EQ(host("OPEN PROG 1 CLEAR"), "");
   EXPECT_EQ(host("N$64"), "ERR003");
@@ -406,17 +456,17 @@ TEST_F(FixedBuffer, SaveKeepsProgramsAndNoRotaryBuffer) {
   ASSERT_EQ(host("CLOSE SAVE"), "");
   ASSERT_EQ(host("DEL ROT OPEN PROG 32767 CLEAR X3 CLOSE OPEN PROG 2 X4 CLOSE"), "");
   platform::reset();
-  EXPECT_EQ(host("LIST PROG 32767"), "X1Y2");
-  EXPECT_EQ(host("LIST PLC 31"), "P1=1|P2=$F");
-  EXPECT_EQ(host("&16LIST FORWARD"), "Q7=P1");
-  EXPECT_EQ(host("LIST INVERSE"), "P1=Q7/3");
+  EXPECT_EQ(host("LIST PROG 32767"), "X1Y2|RET");
+  EXPECT_EQ(host("LIST PLC 31"), "P1=1|P2=$F|RET");
+  EXPECT_EQ(host("&16LIST FORWARD"), "Q7=P1|RET");
+  EXPECT_EQ(host("LIST INVERSE"), "P1=Q7/3|RET");
   EXPECT_EQ(host("LIST PROG 2"), "ERR003") << "it was not saved";
   EXPECT_EQ(host("&1LIST ROT"), "ERR003");
-  EXPECT_EQ(open_words(), 26624u - 2u - 3u - 2u - 4u);
+  EXPECT_EQ(open_words(), 26624u - 3u - 4u - 3u - 5u);
   EXPECT_EQ(plc_enabled(), 0x80000000u) << "what there is comes up enabled (firmware:8.4)";
   ASSERT_EQ(host("OPEN PROG 32767 Z3 CLOSE"), "") << "it can be added to";
-  EXPECT_EQ(host("LIST PROG 32767"), "X1Y2|Z3");
-  EXPECT_EQ(host("LIST PLC 31"), "P1=1|P2=$F");
+  EXPECT_EQ(host("LIST PROG 32767"), "X1Y2|Z3|RET");
+  EXPECT_EQ(host("LIST PLC 31"), "P1=1|P2=$F|RET");
 }
 
 TEST_F(FixedBuffer, DefaultsHaveNoPrograms) {
@@ -425,7 +475,7 @@ TEST_F(FixedBuffer, DefaultsHaveNoPrograms) {
   EXPECT_EQ(host("LIST PROG 1"), "ERR003");
   EXPECT_EQ(open_words(), 26624u);
   platform::reset();
-  EXPECT_EQ(host("LIST PROG 1"), "X1") << "the flash store is untouched until SAVE";
+  EXPECT_EQ(host("LIST PROG 1"), "X1|RET") << "the flash store is untouched until SAVE";
 }
 
 TEST_F(FixedBuffer, FullMemoryIsSavedAndRestored) {

@@ -19,7 +19,7 @@ class Listing : public FirmwareTest {
   }
   static std::string listed(const std::string& line) {
     enter("PROG 1", {line});
-    return host("LIST PROG 1");
+    return host_lines("LIST PROG 1").at(0);  // then RETURN
   }
 };
 
@@ -28,8 +28,9 @@ TEST_F(Listing, ShortAndLongForm) {
   const Lines lines = {"rapid X1 Y2.50 ; comment", "Linear F(P1*2)", "dwell 100",
                        "IF (P1 != 2 AND Q3 > .5)", "return",         "end if"};
   enter("PROG 1", lines);
-  const Lines brief = {"RPD X1Y2.5", "LIN F(P1*2)", "DWE100", "IF(P1!=2 AND Q3>0.5)", "RET", "ENDI"};
-  const Lines full = {"RAPID X1Y2.5", "LINEAR F(P1*2)", "DWELL100", "IF(P1!=2 AND Q3>0.5)", "RETURN", "ENDIF"};
+  const Lines brief = {"RPD X1Y2.5", "LIN F(P1*2)", "DWE100", "IF(P1!=2 AND Q3>0.5)", "RET", "ENDI", "RET"};
+  const Lines full = {"RAPID X1Y2.5", "LINEAR F(P1*2)", "DWELL100", "IF(P1!=2 AND Q3>0.5)",
+                      "RETURN",       "ENDIF",          "RETURN"};
   for (const int i9 : {0, 2, 1, 3}) {
     ASSERT_EQ(host("I9=" + std::to_string(i9)), "");
     EXPECT_EQ(host_lines("LIST PROG 1"), i9 % 2 == 0 ? brief : full) << i9;
@@ -43,7 +44,8 @@ TEST_F(Listing, PlcsAreListedOneStatementALine) {  // as recorded: firmware:4.8
 }
 
 TEST_F(Listing, AddressesAreListedAsTheyAreEntered) {
-  const Lines lines = {"ADR#32", "ADR&16", "ADR#1&2", "ADR#P0", "ADR&P8191", "ADR#P400&P401", "ADR#7&P3", "ADR#P3&7"};
+  const Lines lines = {"ADR#32",        "ADR&16",   "ADR#1&2",  "ADR#P0", "ADR&P8191",
+                       "ADR#P400&P401", "ADR#7&P3", "ADR#P3&7", "RET"};
   enter("PLC 5", lines);
   EXPECT_EQ(host_lines("LIST PLC 5"), lines);
 }
@@ -79,8 +81,11 @@ TEST_F(Listing, ALineIsListedSoThatItGoesBack) {
       ASSERT_EQ(host("I9=0 OPEN PROG 1 CLEAR"), "");
       ASSERT_EQ(host(line), brief.size() <= 255 ? "" : "ERR003") << line;
       ASSERT_EQ(host("CLOSE"), "");
-      ASSERT_EQ(host("LIST PROG 1"), brief.size() <= 255 ? brief : "ERR003") << line;
-      ASSERT_EQ(host("I9=1 LIST PROG 1"), brief.size() > 255 ? "ERR003" : full.size() <= 255 ? full : brief) << line;
+      ASSERT_EQ(host_lines("LIST PROG 1").at(0), brief.size() <= 255 ? brief : "ERR003") << line;
+      ASSERT_EQ(host_lines("I9=1 LIST PROG 1").at(0), brief.size() > 255   ? "ERR003"
+                                                      : full.size() <= 255 ? full
+                                                                           : brief)
+          << line;
     }
   }
 }
@@ -90,10 +95,12 @@ TEST_F(Listing, EachLineOfAPlcIsMeasuredAlone) {
   ASSERT_EQ(text.size(), 255u);
   ASSERT_EQ(many.size(), 255u);
   enter("PLC 1", {text, many});
-  Lines expected(52, "P1=0.1");
-  expected[0] = text;
+  Lines expected(53, "P1=0.1");
+  expected.front() = text;
+  expected.back() = "RET";
   EXPECT_EQ(host_lines("LIST PLC 1"), expected);
   ASSERT_EQ(host("I9=1"), "");
+  expected.back() = "RETURN";
   EXPECT_EQ(host_lines("LIST PLC 1"), expected) << "COMMAND would make 259 characters";
 }
 
@@ -162,11 +169,11 @@ TEST_F(Listing, BlanksInADisplayAreNothing) {
 
 TEST_F(Listing, OffsetsCountWordsAndPartsAreCut) {
   enter("PLC 5", {"IF(M4900=0)", "M4900=1", "ENDIF"});  // 3 words (two values, comparison), 2 (value, M4900=), 1
-  EXPECT_EQ(host_lines("LIST PLC5,0,80"), (Lines{"0:IF(M4900=0)", "3:M4900=1", "5:ENDI"}));
-  EXPECT_EQ(host_lines("LIST PLC5,3"), (Lines{"3:M4900=1", "5:ENDI"}));
+  EXPECT_EQ(host_lines("LIST PLC5,0,80"), (Lines{"0:IF(M4900=0)", "3:M4900=1", "5:ENDI", "6:RET"}));
+  EXPECT_EQ(host_lines("LIST PLC5,3"), (Lines{"3:M4900=1", "5:ENDI", "6:RET"}));
   EXPECT_EQ(host_lines("LIST PLC5,1,3"), (Lines{"3:M4900=1"}));
   EXPECT_EQ(host_lines("LIST PLC5,0,5"), (Lines{"0:IF(M4900=0)", "3:M4900=1"})) << "lines that begin in it";
-  EXPECT_EQ(host("LIST PLC5,6"), "ERR003");  // past its end
+  EXPECT_EQ(host("LIST PLC5,7"), "ERR003");  // past its end
   EXPECT_EQ(host("LIST PLC6"), "ERR003");
   EXPECT_EQ(host("LIST PLC5,-1"), "ERR003");
   EXPECT_EQ(host("LIST PLC5,0,X"), "ERR003");
@@ -180,8 +187,8 @@ TEST_F(Listing, KinematicProgramsBelongToTheirCoordinateSystem) {
   ASSERT_EQ(host("&3"), "");
   EXPECT_EQ(host("LIST FORWARD"), "ERR003");
   enter("INVERSE", {"P1=Q7/2"});
-  EXPECT_EQ(host("LIST INV,0"), "0:P1=Q7/2");
-  EXPECT_EQ(host("&1LIST FWD"), "Q7=P1*2");
+  EXPECT_EQ(host("LIST INV,0"), "0:P1=Q7/2|4:RET");
+  EXPECT_EQ(host("&1LIST FWD"), "Q7=P1*2|RET");
 }
 
 TEST_F(Listing, TheOpenBufferAndTheRotaryOne) {

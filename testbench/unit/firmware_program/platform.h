@@ -29,6 +29,7 @@ extern "C" {
 #include "firmware/language/expression.h"
 #include "firmware/language/operators.h"
 #include "firmware/language/statement.h"
+#include "firmware/language/statement_key.h"
 #include "firmware/language/statement_table.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion_status.h"

@@ -204,7 +204,7 @@ TEST_F(ProgramTexts, CommandsOfAProgramDoNotEnterTheHostsBuffer) {
   EXPECT_EQ(p_variable_read(1), 1.0) << "executed, not stored";
   ASSERT_EQ(host("P3=3"), "");
   ASSERT_EQ(host("CLOSE"), "");
-  EXPECT_EQ(host("LIST PROG 5"), "P2=2|P3=3");
+  EXPECT_EQ(host("LIST PROG 5"), "P2=2|P3=3|RET");
 }
 
 TEST_F(ProgramTexts, ProgramHasABufferOfItsOwn) {
@@ -216,7 +216,7 @@ TEST_F(ProgramTexts, ProgramHasABufferOfItsOwn) {
   EXPECT_EQ(host("CLOSE"), "");
   EXPECT_EQ(host("OPEN PROG 7"), "ERR007") << "it is not the host's to close";
   EXPECT_EQ(host("CLOSE ALL"), "");
-  EXPECT_EQ(host("LIST PROG 6"), "P4=4");
+  EXPECT_EQ(host("LIST PROG 6"), "P4=4|RET");
 }
 
 TEST_F(ProgramTexts, ControlCharacterOfACommandActs) {

@@ -136,7 +136,7 @@ TEST_F(Regions, WhatThereIsNoBufferOfIsDeletedAllTheSame) {
   const std::string size = platform::host("SIZE");
   EXPECT_EQ(platform::host("DELETE TRACE DELETE PLCC 3 DEL TRACE"), "");
   EXPECT_EQ(platform::host("SIZE"), size);
-  EXPECT_EQ(platform::host("LIST PLC 3"), "P1=1") << "a compiled one is another";
+  EXPECT_EQ(platform::host("LIST PLC 3"), "P1=1|RET") << "a compiled one is another";
   EXPECT_EQ(platform::host("DELETE PLCC 32"), "ERR003") << "there are 32 of them, from 0";
 }
 

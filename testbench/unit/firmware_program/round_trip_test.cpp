@@ -28,11 +28,14 @@ unsigned programs_of_each_kind() {
   return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : 150;
 }
 
+// Without a RETURN at its end: CLOSE appends one unless the lines, or a listing, end with one.
 std::vector<word48_t> words_of(const Kind& kind) {
   std::vector<word48_t> words;
   const fixed_program* program = fixed_program_find(kind.kind, kind.number);
   for (std::uint32_t i = 0; program != nullptr && i < program->words; ++i)
     words.push_back(fixed_program_word(program, i));
+  const instruction last = words.empty() ? instruction{} : word_decode(words.back());
+  if (last.operation == OP_STATEMENT && last.number == KEY_RETURN) words.pop_back();
   return words;
 }
 
@@ -122,7 +125,8 @@ TEST_F(RoundTrip, LongLinesGoBackOrAreRefused) {
     for (const char* i9 : {"I9=0", "I9=1"}) {
       ASSERT_EQ(host(i9), "");
       const std::vector<std::string> listed = list(kind);
-      ASSERT_EQ(listed, (std::vector<std::string>{i9[3] == '1' ? full : brief}));
+      ASSERT_EQ(listed.front(), i9[3] == '1' ? full : brief);
+      ASSERT_LE(listed.size(), 2u);
       ASSERT_NO_FATAL_FAILURE(enter(kind, listed));
       ASSERT_EQ(words_of(kind), words) << listed[0];
     }
@@ -208,7 +212,7 @@ TEST_F(RoundTrip, HostileLinesStayInTheirBuffer) {
   }
   EXPECT_GE(stored, programs_of_each_kind());
   EXPECT_GE(refused, programs_of_each_kind());
-  EXPECT_EQ(host("LIST PROG 1"), "X1Y2");
+  EXPECT_EQ(host("LIST PROG 1"), "X1Y2|RET");
 }
 
 // What a host writes over a program with WX and WY is listed as something, and nothing else happens.

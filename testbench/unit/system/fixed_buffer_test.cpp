@@ -65,7 +65,7 @@ TEST_P(FixedBuffers, ProgramsComeBackAfterSaveAndReset) {
   ASSERT_EQ(ask("SAVE"), "");
   ASSERT_EQ(ask("OPEN PROG 5 CLEAR CLOSE"), "");
   ASSERT_EQ(ask("$$$"), "");
-  EXPECT_EQ(ask("LIST PROG 5"), "X1Y(P1*2)");
+  EXPECT_EQ(ask("LIST PROG 5"), "X1Y(P1*2)|RET");
   EXPECT_EQ(ask("LIST PLC 3,1,3"), "3:CMD\"#1j+\"");
 }
 

@@ -257,7 +257,7 @@ TEST_P(StreamOn, FixedBuffersKeepAndExecuteEachLineInOrder) {
       ASSERT_EQ(ask(text(1, number_)), "");
     }
     ASSERT_EQ(ask("CLOSE"), "");
-    ASSERT_EQ(ask("LIST PROG " + program), listing);
+    ASSERT_EQ(ask("LIST PROG " + program), listing + "|RET");
     ASSERT_EQ(ask("&1 B" + program + " R"), "");
     const auto ended = [this] { return (std::stoul(ask("??").substr(0, 12), nullptr, 16) & 0x1020000u) == 0x20000u; };
     for (unsigned tries = 0; !ended(); ++tries) {  // all is calculated, and nothing executes
