@@ -14,4 +14,5 @@ static error_t cmd_end_gather(struct lexer* lx) {
 }
 
 const struct command_entry gather_commands[] = {
-    {"ENDGATHER", cmd_end_gather}, {"ENDG", cmd_end_gather}, {"GATHER", cmd_gather}, {"GAT", cmd_gather}, {0, 0}};
+    {"ENDGATHER", cmd_end_gather}, {"END GATHER", cmd_end_gather}, /* as command files spell it */
+    {"ENDG", cmd_end_gather},      {"GATHER", cmd_gather},         {"GAT", cmd_gather}, {0, 0}};

@@ -146,5 +146,6 @@ const struct command_entry report_commands[] = {
     {"SID", serial_number},
     {"IDNUMBER", id_number},
     {"CHECKSUM", checksum},
+    {"CHKS", checksum},
     {0, 0},
 };

@@ -98,7 +98,7 @@ TEST(HostExchange, IdentifiesTheBoardAndTheFirmware) {
   EXPECT_EQ(c.line("CPU DATE EAVER"), "DSP56321|07/01/2014|1947001");
   EXPECT_EQ(c.line("SID IDNUMBER"), "0000000934F6|00000000000934F6");  // 603382 = $934F6
   static_assert(FAKE_IMAGE_WORDS == 1000, "1 + 2 + ... + 1000 = 500500 = $7A314");
-  EXPECT_EQ(c.line("CHECKSUM"), "7A314");
+  EXPECT_EQ(c.line("CHECKSUM CHKS"), "7A314|7A314");
   fake_hal_set_strap(HAL_STRAP_CARD, 602404);
   EXPECT_EQ(c.line("CID"), "602404");
 }

@@ -54,7 +54,7 @@ TEST_F(Gather, GoesOnWithTheNextInterrupt) {
   const unsigned long before = count();
   ASSERT_EQ(host("GAT"), "");
   servo_ticks(3);
-  ASSERT_EQ(host("ENDG GAT"), "");
+  ASSERT_EQ(host("END GATHER GAT"), "") << "firmware:4.3/10";
   servo_ticks(1);
   ASSERT_EQ(host("ENDG"), "");
   EXPECT_EQ(host_lines("LIST GATHER"), (Lines{hex(before + 1) + "000000", hex(before + 4) + "000000"}));
