@@ -1,9 +1,10 @@
 /* I-, P-, Q- and M-variables on line (firmware:1.4, firmware:1.5):
- *   I19   I0..99   I16,4   I5213,15,100=10   I(P1*100+20)=10   I100..199=*   M1->Y:$78C02,8,1   M0..99->
+ *   I19   I0..99   I16,4   I5213,15,100=10   I(P1*100+20)=10   I100..199=*   I103=@I8000   M1->Y:$78C02,8,1   M0..99->
  * The right side is evaluated once; without `=` every variable is reported on a line of its own. */
 #include "firmware/command/variable_commands.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/base/memory_map.h"
 #include "firmware/command/m_definition.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
@@ -104,12 +105,23 @@ static void assign(char letter, uint32_t number, double value) {
   }
 }
 
-/* `*` on the right side: the factory default, of I-variables only. */
+/* `@I8000`: where a line of the conversion table and its result stand. No page tells where other variables do. */
+static error_t read_address(struct lexer* lx, double* address) {
+  uint32_t number;
+  if (!lexer_accept(lx, 'I')) return ERR_DATA;
+  const error_t error = read_number(lx, VARIABLE_COUNT, &number);
+  if (error != ERR_NONE || number < I_BASE_TABLE) return ERR_DATA;
+  *address = (double)(MEMORY_CONVERSION + number - I_BASE_TABLE);
+  return ERR_NONE;
+}
+
+/* Of I-variables alone the right side may be `*`, the factory default, or an address. */
 static error_t assign_range(struct lexer* lx, char letter, const struct range* range) {
   double value = 0.0;
   const bool defaults = letter == 'I' && lexer_accept(lx, '*');
   if (!defaults) {
-    const error_t error = expression_evaluate(lx, session.cs, &value);
+    const error_t error =
+        letter == 'I' && lexer_accept(lx, '@') ? read_address(lx, &value) : expression_evaluate(lx, session.cs, &value);
     if (error != ERR_NONE) return error;
   }
   for (uint32_t i = 0; i < range->count; ++i) {

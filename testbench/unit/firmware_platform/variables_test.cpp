@@ -135,6 +135,16 @@ TEST(IVariables, RunsAndStepsOfNumbers) {
   EXPECT_EQ(c.line("P5"), "0");
 }
 
+// firmware:1.4/7: lines and results of the conversion table stand at $3501 on.
+TEST(IVariables, TakeAddressesOfTheConversionTable) {
+  Controller c;
+  EXPECT_EQ(c.line("I103=@I8000 I104 = @ I8191 I203,2=@I(8000+5)"), "");
+  EXPECT_EQ(c.line("I103..104 I203..204"), "$3501|$35C0|$3506|$3506");
+  for (const char* text : {"I103=@I7999", "I103=@I8192", "I103=@8000", "I103=@P8000", "P1=@I8000", "I103=@"})
+    EXPECT_EQ(c.line(text), "ERR003") << text;
+  EXPECT_EQ(c.line("I103"), "$3501");
+}
+
 TEST(IVariables, ValuesAreReadInHexOrDecimalWhateverI9) {
   BRICK_COVERS("I9-2 I9-3");
   Controller c;
