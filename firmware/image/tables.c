@@ -8,6 +8,7 @@
 #include "firmware/command/command.h"
 #include "firmware/command/gather_commands.h"
 #include "firmware/command/list_commands.h"
+#include "firmware/command/lock_commands.h"
 #include "firmware/command/memory_commands.h"
 #include "firmware/command/motor_commands.h"
 #include "firmware/command/phase_commands.h"
@@ -110,9 +111,19 @@ const i_effect_t i_effects[I_FIELD_COUNT] = {
     [I_FIELD_MOTOR_BOTH] = motor_changed,
 };
 
-const struct command_entry* const command_tables[] = {
-    report_commands, system_commands, memory_commands, calendar_commands, buffer_commands, list_commands,
-    plc_commands,    motor_commands,  phase_commands,  program_commands,  gather_commands, 0};
+const struct command_entry* const command_tables[] = {report_commands,
+                                                      system_commands,
+                                                      memory_commands,
+                                                      calendar_commands,
+                                                      buffer_commands,
+                                                      list_commands,
+                                                      plc_commands,
+                                                      lock_commands,
+                                                      motor_commands,
+                                                      phase_commands,
+                                                      program_commands,
+                                                      gather_commands,
+                                                      0};
 
 void (*const reply_sink)(uint8_t c) = host_port_send;
 

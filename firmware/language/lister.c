@@ -205,12 +205,22 @@ static void address(uint32_t number) {
   address_part('&', statement_address_cs(number));
 }
 
+static void lock(uint32_t number) {
+  integer_text(number & (LOCK_COUNT - 1u), put);
+  text(",P");
+  integer_text(number >> LOCK_VARIABLE_BIT, put);
+}
+
 static void item_list(const struct instruction* in) {
-  const uint32_t code = in->group == DISPLAY_VALUE ? WORD_KEY(9, 2, 10) : in->group;
+  const uint32_t code = in->group == DISPLAY_VALUE  ? WORD_KEY(9, 2, 10)
+                        : in->group == LOCK_TELLING ? WORD_KEY(9, 0, 12)
+                                                    : in->group;
   const struct statement_row* row = statement_row_of(code);
   statement_name(code);
   if (in->group == DISPLAY_VALUE)
     display_value(in->number);
+  else if (in->group == LOCK_TELLING)
+    lock(in->number);
   else if (row == 0)
     return;
   else if (row->argument == ARGUMENT_LETTERS)

@@ -261,6 +261,25 @@ static error_t display(struct lexer* lx, const struct statement_row* row, struct
   return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
 }
 
+/* LOCK5,P100. */
+error_t statement_lock(struct lexer* lx, uint32_t* number) {
+  uint32_t lock, variable;
+  error_t error = integer(lx, 0, LOCK_COUNT - 1, &lock);
+  if (error == ERR_NONE && (!lexer_accept(lx, ',') || !lexer_accept(lx, 'P'))) error = ERR_DATA;
+  if (error == ERR_NONE) error = integer(lx, 0, VARIABLE_COUNT - 1, &variable);
+  if (error == ERR_NONE) *number = lock | variable << LOCK_VARIABLE_BIT;
+  return error;
+}
+
+static error_t lock(struct lexer* lx, const struct statement_row* row, struct word_list* out) {
+  struct instruction in = {OP_LIST, LOCK_TELLING, 0, 0.0};
+  struct lexer after = *lx;
+  double number;
+  if (lexer_constant(&after, &number) != ERR_NONE || !lexer_accept(&after, ',')) return value(lx, row, out);
+  const error_t error = statement_lock(lx, &in.number);
+  return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
+}
+
 error_t statement_argument_compile(struct lexer* lx, const struct statement_row* row, struct word_list* out) {
   switch (row->argument) {
     case ARGUMENT_NONE:
@@ -281,6 +300,8 @@ error_t statement_argument_compile(struct lexer* lx, const struct statement_row*
       return text_or_control(lx, row, out);
     case ARGUMENT_DISPLAY:
       return display(lx, row, out);
+    case ARGUMENT_LOCK:
+      return lock(lx, row, out);
     default:
       return value(lx, row, out);
   }

@@ -8,6 +8,9 @@
 enum { LABEL_LIMIT = 262143 };
 #define DISPLAY_VALUE WORD_KEY(9, 1, 10) /* DISPLAY of a value; that of a text is in the table */
 enum { DISPLAY_COLUMNS = 80, DISPLAY_WIDTH_BIT = 8, DISPLAY_DECIMALS_BIT = 16 };
+#define LOCK_TELLING WORD_KEY(9, 1, 12) /* LOCK with the P-variable that it tells; without one it is in the table */
+enum { LOCK_COUNT = 8, LOCK_VARIABLE_BIT = 3 };
+error_t statement_lock(struct lexer* lx, uint32_t* number); /* of the lock, and above it that of the variable */
 
 /* ADDRESS names a motor, a coordinate system or both; 0: not named. A part is a number, or with ADDRESS_VARIABLE that
  * of the P-variable which holds it. In the statement's word they lie as `statement_address` puts them. */

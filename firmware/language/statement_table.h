@@ -23,7 +23,8 @@ enum statement_argument {
   ARGUMENT_PLCS,
   ARGUMENT_ADDRESS, /* #1&2, #P400 */
   ARGUMENT_TEXT,    /* "text" or ^letter */
-  ARGUMENT_DISPLAY  /* [column]"text" or column,width.decimals,variable */
+  ARGUMENT_DISPLAY, /* [column]"text" or column,width.decimals,variable */
+  ARGUMENT_LOCK     /* number,P-variable; a value alone, as before there were locks */
 };
 
 enum statement_where {

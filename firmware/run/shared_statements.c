@@ -4,6 +4,8 @@
 #include "firmware/language/statement_key.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/run/plc_control.h"
+#include "firmware/run/process_locks.h"
+#include "firmware/variables/pq_variables.h"
 
 enum { LONGEST_TEXT_WORDS = (TEXT_LENGTH + WORD_TEXT_CHARACTERS - 1) / WORD_TEXT_CHARACTERS };
 
@@ -32,9 +34,22 @@ static enum program_output list(struct executor* x, const struct instruction* in
       if (!evaluator_pop(&x->evaluator, &value)) return OUTPUT_ILLEGAL;
       program_output_value(in, value);
       return OUTPUT_DONE;
+    case LOCK_TELLING:
+      p_variable_write(in->number >> LOCK_VARIABLE_BIT, process_lock(in->number & (LOCK_COUNT - 1u)) ? 1.0 : 0.0);
+      return OUTPUT_DONE;
     default:
       return OUTPUT_ILLEGAL;
   }
+}
+
+static enum program_output lock(const struct instruction* in) {
+  if (in->number != KEY_LOCK && in->number != KEY_UNLOCK) return OUTPUT_ILLEGAL;
+  if (!(in->value >= 0.0 && in->value < (double)LOCK_COUNT)) return OUTPUT_DONE; /* there is no such lock */
+  if (in->number == KEY_LOCK)
+    (void)process_lock((uint32_t)in->value);
+  else
+    process_unlock((uint32_t)in->value);
+  return OUTPUT_DONE;
 }
 
 static enum program_output text(struct executor* x, const struct instruction* in, const struct program_caller* caller) {
@@ -52,9 +67,9 @@ enum program_output shared_statement(struct executor* x, const struct instructio
       return list(x, in);
     case OP_TEXT:
       return text(x, in, caller);
-    case OP_STATEMENT: /* nobody waits at a lock: its state would go to a variable, which this syntax does not have */
+    case OP_STATEMENT:
     case OP_STATEMENT_POP:
-      return in->number == KEY_LOCK || in->number == KEY_UNLOCK ? OUTPUT_DONE : OUTPUT_ILLEGAL;
+      return lock(in);
     default:
       return OUTPUT_ILLEGAL;
   }

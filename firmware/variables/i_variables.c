@@ -158,6 +158,15 @@ void i_variable_set_lookahead_state(uint32_t cs, uint32_t state) { store(i_cs(cs
 
 void i_variable_set_open_memory_end(uint32_t address) { store(I4908_OPEN_MEMORY_END, address); }
 
+enum { I4904_MEMORY = I4900_SERVO_ICS + 4, FIRST_LOCK = 4, LOCKS = 0xFF };
+
+uint32_t i_variable_locks(void) { return (uint32_t)i_integers[I4904_MEMORY] >> FIRST_LOCK & LOCKS; }
+
+void i_variable_set_locks(uint32_t locks) {
+  const uint32_t others = (uint32_t)i_integers[I4904_MEMORY] & ~((uint32_t)LOCKS << FIRST_LOCK);
+  store(I4904_MEMORY, others | locks << FIRST_LOCK);
+}
+
 /* Start-up --------------------------------------------------------------------------------------------------------- */
 
 double i_variable_default(uint32_t number) {

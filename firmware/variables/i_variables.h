@@ -18,6 +18,8 @@ void i_timer_write(uint32_t number, int32_t value); /* Isx11, Isx12 as words of 
 void i_timers_pass(void); /* background: one that has run down stays so when the servo count has come round, 22 days */
 double i_variable_default(uint32_t number);            /* what `I{number}=*` assigns */
 void i_variable_set_open_memory_end(uint32_t address); /* I4908, which nobody else writes */
+uint32_t i_variable_locks(void);                       /* bits 4 to 11 of I4904, a process lock each */
+void i_variable_set_locks(uint32_t locks);             /* under the mask */
 bool i_variable_foreground_in_position(void);          /* I13, but of a Geo PMAC, where that is something else */
 extern int32_t i_integers[];
 void i_variable_set_lookahead_state(uint32_t cs, uint32_t state); /* Isx21, as it is: no order */

@@ -361,4 +361,32 @@ TEST_F(Plc, TimerHoldsALoop) {
   EXPECT_EQ(host("P1..3"), "1|1|1");
 }
 
+// firmware:7.2/3: whoever finds a lock free has it; the others wait until it is let go.
+TEST_F(Plc, ALockHasOneHolderAtATime) {
+  load(1,
+       {"P1=1", "WHILE(P1=1)", "LOCK4,P1", "ENDWHILE", "P11=P11+1", "WHILE(P9=0)", "ENDWHILE", "UNLOCK4", "DISPLC1"});
+  load(2, {"P2=1", "WHILE(P2=1)", "LOCK 4, P2", "ENDWHILE", "P12=P12+1", "DISPLC2"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1,2"), "");
+  background(20);
+  EXPECT_EQ(host("P1..2 P11..12 I4904"), "0|1|1|0|$101") << "bit 8 is lock 4, bit 0 the RAM";
+  ASSERT_EQ(host("P9=1"), "");
+  background(20);
+  EXPECT_EQ(host("P1..2 P11..12 I4904"), "0|0|1|1|$101") << "PLC 2 has it now";
+  EXPECT_EQ(host("LOCK4,P3 P3 LOCK5,P4 P4 I4904"), "1|0|$301");
+  EXPECT_EQ(host("UNLOCK4 UNLOCK5 UNLOCK7 LOCK7,P8191 P8191 I4904"), "0|$801");
+  for (const char* wrong :
+       {"LOCK8,P1", "LOCK-1,P1", "LOCK1", "LOCK1,8", "LOCK1,P8192", "UNLOCK8", "UNLOCK", "LOCK1.5,P1"})
+    EXPECT_EQ(host(wrong), "ERR003") << wrong;
+  platform::reset();
+  EXPECT_EQ(host("I4904"), "$1") << "a reset frees all";
+}
+
+TEST_F(Plc, ALockIsListedAsItIsEntered) {
+  load(3, {"LOCK0,P0", "lock 7 , p8191", "UNLOCK7", "LOCK 3"});
+  EXPECT_EQ(host("LIST PLC 3"), "LOCK0,P0|LOCK7,P8191|UNLOCK7|LOCK3|RET");
+  ASSERT_EQ(host("OPEN PLC 3"), "");
+  for (const char* wrong : {"LOCK8,P1", "LOCK1,P8192", "LOCK1,Q1", "LOCK1,", "LOCK(1),P1"})
+    EXPECT_EQ(host(wrong), "ERR003") << wrong;
+}
+
 }  // namespace

@@ -125,6 +125,9 @@ std::string ProgramGenerator::argument(const statement_row& row) {
     case ARGUMENT_TEXT:
       if (number(4) == 0) return std::string("^") + "@ABKZ[_"[number(7)];
       break;
+    case ARGUMENT_LOCK:
+      if (number(4) == 0) return value(true);
+      return std::to_string(number(8)) + "," + (number(2) == 0 ? " P" : "P") + std::to_string(number(8192));
     case ARGUMENT_DISPLAY:
       if (number(3) == 0)
         return std::to_string(number(80)) + "," + std::to_string(1 + number(16)) + "." + std::to_string(number(10)) +
