@@ -168,6 +168,31 @@ void fixed_program_close(void) {
   end_change();
 }
 
+static void move_down(uint32_t from, uint32_t to, uint32_t words) {
+  for (uint32_t i = 0; i < words; i++) {
+    user_memory_write(to + i, user_memory_read(from + i));
+    fixed_program_links[to + i] = fixed_program_links[from + i];
+  }
+}
+
+/* What stays closes up. */
+void fixed_programs_erase(uint32_t kinds) {
+  uint32_t kept = 0, end = 0;
+  begin_change();
+  for (uint32_t i = 0; i < fixed.count; i++) {
+    const struct fixed_program program = fixed.programs[i];
+    if ((kinds >> program.kind & 1u) != 0) continue;
+    move_down(program.base, end, program.words);
+    watchdog_reload();
+    fixed.programs[kept] = program;
+    fixed.programs[kept++].base = end;
+    end += program.words;
+  }
+  fixed.count = kept;
+  (void)region_resize_fixed(end); /* that is less */
+  end_change();
+}
+
 bool fixed_program_restore(enum fixed_kind kind, uint32_t number, uint32_t words) {
   static const uint32_t limits[FIXED_KINDS] = {FIXED_PROG_LIMIT + 1, FIXED_PLC_COUNT, COORDINATE_SYSTEMS,
                                                COORDINATE_SYSTEMS};

@@ -50,6 +50,9 @@ void fixed_program_drop_last(void); /* its last word */
 void fixed_program_clear(void);
 void fixed_program_close(void); /* an empty one is gone */
 
+/* Erases all programs of these kinds, a bit each; none is open. */
+void fixed_programs_erase(uint32_t kinds);
+
 /* Enters a program whose words are in user memory already, above all other programs. False: it does not fit. */
 bool fixed_program_restore(enum fixed_kind kind, uint32_t number, uint32_t words);
 

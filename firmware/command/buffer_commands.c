@@ -81,8 +81,25 @@ static error_t clear_rotary(uint32_t cs) {
 
 static bool is_binary_open(void) { return open_buffer_kind() == OPEN_BINARY_ROTARY && session_owns_buffer(); }
 
+/* Motion programs may run while PLCs go: their words move, as for OPEN PLC. */
+static error_t clear_all(uint32_t kinds) {
+  const bool plcs_alone = kinds == 1u << FIXED_PLC;
+  if (open_buffer_kind() != OPEN_NONE) return ERR_BUFFER_OPEN;
+  if (!plcs_alone && run_any_running()) return ERR_PROGRAM_RUNNING;
+  for (uint32_t i = 0; i < fixed_programs_count(); i++) {
+    const struct fixed_program* program = fixed_program_at(i);
+    const bool goes = (kinds >> program->kind & 1u) != 0;
+    if (goes && program_password_protects((enum fixed_kind)program->kind, program->number)) return ERR_PASSWORD;
+  }
+  plc_disable(PLC_ALL);
+  fixed_programs_erase(kinds);
+  if (!plcs_alone) coordinate_systems_forget_programs();
+  return ERR_NONE;
+}
+
 static error_t cmd_clear(struct lexer* lx) {
-  (void)lx;
+  if (lexer_keyword(lx, "ALL"))
+    return clear_all(lexer_keyword(lx, "PLCS") ? 1u << FIXED_PLC : (1u << FIXED_KINDS) - 1u);
   if (!program_buffer_open() && !is_binary_open()) return ERR_BUFFER_OPEN; /* so numbered whatever is open */
   if (open_buffer_kind() != OPEN_FIXED) return clear_rotary(session.cs);
   program_line_abandon();

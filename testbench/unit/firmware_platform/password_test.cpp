@@ -52,8 +52,11 @@ TEST(Password, ProtectsFromTheNextStartOnWhenItWasSaved) {
   EXPECT_EQ(c.line("PASSWORD=Bush "), "ERR002") << "so do blanks";
   EXPECT_EQ(c.line("PASSWORD=\"Bush\""), "ERR002") << "and quotes";
   expect_protected(c, true);
+  EXPECT_EQ(c.line("CLEAR ALL"), "ERR002");
+  EXPECT_EQ(c.line("CLEAR ALL PLCS"), "ERR002");
   EXPECT_EQ(c.line("password=Bush"), "") << "but not those of the command";
   expect_protected(c, false);
+  EXPECT_EQ(c.line("CLEAR ALL LIST PROG 1000"), "ERR003");
 }
 
 TEST(Password, IsLostWithoutSaveAndByTheFactorysDefaults) {

@@ -389,6 +389,46 @@ TEST_F(FixedBuffer, OnlyAStatementIsTheAppendedReturn) {
   }
 }
 
+// firmware:4.3/5: of what stays nothing changes but where it lies.
+TEST_F(FixedBuffer, ClearAllErasesProgramsOrPlcs) {
+  const std::string logic = "P1=0.1 IF(P2=2)P3=3 ENDIF";
+  for (const std::string& program : {"PLC 0 " + logic, std::string("PROG 7 N5 P4=4"), "PLC 31 " + logic,
+                                     "FORWARD " + logic, std::string("PROG 32767 X1Y2"), "INVERSE " + logic})
+    ASSERT_EQ(host("OPEN " + program + " CLOSE"), "") << program;
+  ASSERT_EQ(host("ENABLE PLC 31"), "");
+  ASSERT_EQ(host("CLEAR ALL PLCS"), "");
+  EXPECT_EQ(host("LIST PLC 0"), "ERR003");
+  EXPECT_EQ(host("LIST PLC 31"), "ERR003");
+  EXPECT_EQ(plc_enabled(), 0u);
+  EXPECT_EQ(host("LIST PROG 7 LIST PROG 32767 LIST FORWARD LIST INVERSE"),
+            "N5P4=4|RET|X1Y2|RET|P1=0.1|IF(P2=2)|P3=3|ENDI|RET|P1=0.1|IF(P2=2)|P3=3|ENDI|RET");
+  EXPECT_EQ(open_words(), 26624u - 3u - 3u - 2u * 9u);
+  EXPECT_EQ(host("B7.00005 R"), "") << "PROG 7 is pointed to as before";
+  platform::servo_ticks(30);
+  EXPECT_EQ(host("P4"), "4");
+  ASSERT_EQ(host("OPEN PROG 7"), "");
+  for (const char* text : {"CLEAR ALL", "CLEAR ALL PLCS", "CLR ALL"}) EXPECT_EQ(host(text), "ERR007") << text;
+  EXPECT_EQ(host("LIST"), "N5P4=4") << "nor is the open one cleared";
+  ASSERT_EQ(host("CLOSE CLEAR ALL"), "");
+  for (const char* name : {"PLC 0", "PROG 7", "PLC 31", "FORWARD", "PROG 32767", "INVERSE"})
+    EXPECT_EQ(host(std::string("LIST ") + name), "ERR003") << name;
+  EXPECT_EQ(host("R"), "ERR015");
+  EXPECT_EQ(open_words(), 26624u);
+}
+
+TEST_F(FixedBuffer, ARunningProgramOutlivesThePlcsBelowIt) {
+  ASSERT_EQ(host("OPEN PLC 3 P1=1 CLOSE OPEN PROG 1"), "");
+  for (const char* line : {"WHILE(P5<9)", "P5=P5+1", "DWELL3", "ENDWHILE", "P6=7"}) ASSERT_EQ(host(line), "");
+  ASSERT_EQ(host("CLOSE B1 R"), "");
+  platform::servo_ticks(30);
+  EXPECT_EQ(host("CLEAR ALL"), "ERR001");
+  ASSERT_EQ(host("CLEAR ALL PLCS"), "");
+  const double before = p_variable_read(5);
+  platform::servo_ticks(120);
+  EXPECT_LT(before, 9.0);
+  EXPECT_EQ(host("P5..6"), "9|7");
+}
+
 TEST_F(FixedBuffer, LabelsAreDecimal) {
   ASSERT_EQ(host("OPEN PROG 1 CLEAR"), "");
   EXPECT_EQ(host("N$64"), "ERR003");
