@@ -9,6 +9,8 @@
 #include "firmware/variables/m_variables.h"
 #include "firmware/variables/pq_variables.h"
 
+#define BELOW_A_FLOAT48 UINT64_C(0x3FFFF) /* of the 53 bits of a double */
+#define HALF_A_FLOAT48 UINT64_C(0x20000)
 #define EXPONENT_MASK UINT64_C(0x7FF0000000000000)
 #define FRACTION_MASK UINT64_C(0x000FFFFFFFFFFFFF)
 
@@ -101,14 +103,16 @@ static double operator_unary(uint32_t code, double a, uint32_t cs) {
 }
 
 /* Only numbers come to the stack, so nothing that takes one has to look: beyond the largest there is the largest, where
- * nothing is defined 0. */
+ * nothing is defined 0. They have the 35 bits that a variable has, half up: the controller has no other numbers. */
 static double number_of(double value) {
   union {
     double value;
     uint64_t bits;
   } u = {value};
-  if ((~u.bits & EXPONENT_MASK) != 0) return value;
-  u.bits = (u.bits & FRACTION_MASK) != 0 ? 0 : u.bits - 1u;
+  if ((u.bits & BELOW_A_FLOAT48) == 0 && (~u.bits & EXPONENT_MASK) != 0) return value;
+  if ((~u.bits & EXPONENT_MASK) != 0) u.bits = (u.bits + HALF_A_FLOAT48) & ~BELOW_A_FLOAT48;
+  if ((~u.bits & EXPONENT_MASK) != 0) return u.value;
+  u.bits = (u.bits & FRACTION_MASK) != 0 ? 0 : u.bits - 1u - BELOW_A_FLOAT48;
   return u.value;
 }
 

@@ -161,11 +161,12 @@ TEST(MVariables, DigitsAreBinaryCodedDecimal) {
   EXPECT_EQ(y(0x10F0), 0x987654u);
   c.line("M1=1000007 WX$10F0,0");  // as many digits as there are
   EXPECT_EQ(y(0x10F0), 0x000007u);
-  const std::pair<const char*, const char*> beyond_32_bits[] = {{"5000000123", "123"},
-                                                                {"4294967296", "967296"},
-                                                                {"-4294967296", "967296"},
-                                                                {"34359738367", "738367"},
-                                                                {"4294967295*32767", "355265"}};
+  const std::pair<const char*, const char*> beyond_32_bits[] = {
+      {"5000000123", "123"},
+      {"4294967296", "967296"},
+      {"-4294967296", "967296"},
+      {"34359738367", "738367"},
+      {"4294967295*32767", "355264"}};  // 140733193355265 in 35 bits
   for (const auto& [value, digits] : beyond_32_bits) {
     c.line("M1=" + std::string(value));
     EXPECT_EQ(c.line("M1"), digits) << value;

@@ -397,7 +397,7 @@ TEST(Float48, IsThePublishedFormat) {
 
 TEST(PVariables, LieInUserMemoryAndPrintTenDigits) {
   Controller c;
-  c.line("P1=25.3 P2=1/3 P3=10121217025 P4=-0.1 P5=2/3*100000");
+  c.line("P1=25.3 P2=1/3 P3=10121217025 P4=-0.1 P5=200000/3");
   EXPECT_EQ(c.line("P1..5"), "25.3|0.3333333333|10121217025|-0.1|66666.66667");
   c.line("P11=0.99999999997 P12=-0.99999999997 P13=9.9999999996 P14=-0.00000000001");  // 1 - 2^-35, 10 - 2^-31
   EXPECT_EQ(c.line("P11..14"), "1|-1|10|0");

@@ -92,6 +92,28 @@ TEST_F(Expression, ConstantsAre48BitFloats) {
   EXPECT_EQ(value("$7FFFFFFFF"), 34359738367.0);
 }
 
+// Mantissa of 35 bits, half up (firmware:1.2/5).
+double rounded(double value) {
+  int exponent;
+  const double mantissa = std::floor(std::ldexp(std::fabs(std::frexp(value, &exponent)), 35) + 0.5);
+  return std::copysign(std::ldexp(mantissa, exponent - 35), value);
+}
+
+// firmware:1.2/6: the controller has no other numbers, so a variable is what it has been set to.
+TEST_F(Expression, EachResultIsA48BitFloat) {
+  std::mt19937 random(brick::random_seed(4));
+  std::uniform_real_distribution<double> any(-1000.0, 1000.0);
+  for (int i = 0; i < 300; ++i) {
+    double p[4] = {};
+    for (unsigned n = 1; n < 4; ++n) p_variable_write(n, any(random)), p[n] = p_variable_read(n);
+    EXPECT_EQ(value("P1*P2+P3"), rounded(rounded(p[1] * p[2]) + p[3]));
+    EXPECT_EQ(value("(P1-P2)/P3"), rounded(rounded(p[1] - p[2]) / p[3]));
+    p_variable_write(4, value("P1/P2"));
+    EXPECT_EQ(value("P1/P2-P4"), 0.0);
+  }
+  EXPECT_EQ(value("34359738367*2+1"), 68719476736.0) << "2^36 - 1";
+}
+
 TEST_F(Expression, FunctionsInDegreesAndRadians) {
   std::mt19937_64 random(brick::random_seed(7));
   std::uniform_real_distribution<double> angle(-1000.0, 1000.0), unit(-1.0, 1.0), positive(1e-6, 1e6),

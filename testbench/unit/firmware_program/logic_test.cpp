@@ -252,6 +252,29 @@ class Logic : public FirmwareTest {
   }
 };
 
+// firmware:1.2/6: a PLC that looks whether a value has changed finds that it has not, whichever way it was rounded.
+TEST_F(Logic, AnExpressionIsComparedAsAVariableHoldsIt) {
+  ASSERT_EQ(host("P3=0.7"), "");
+  unsigned up = 0, down = 0;
+  for (const std::string text : {"P2/3", "-P2/7", "SQRT(P2)*P3", "EXP(P2)", "SIN(P2)/1000000", "P2*1.1"})
+    for (unsigned value = 1; value <= 20; ++value) {
+      ASSERT_EQ(host("P2=" + std::to_string(value)), "");
+      ASSERT_EQ(host("OPEN PROG 1 CLEAR"), "");
+      ASSERT_EQ(host("P1=" + text + " P5=0"), "");
+      for (const std::string comparator : {"!=", "<", ">", "!~"})
+        ASSERT_EQ(host("IF(P1" + comparator + text + ")P5=P5+1"), "");
+      for (const std::string comparator : {"=", "!<", "!>", "~"})
+        ASSERT_EQ(host("IF(" + text + comparator + "P1)P5=P5+100"), "");
+      ASSERT_EQ(host("CLOSE B1R"), "");
+      for (unsigned i = 0; i < 10 && run_is_running(0); ++i) platform::real_time();
+      EXPECT_EQ(host("P5"), "400") << text << " with P2=" << value;
+      up += text == "P2/3" && p_variable_read(1) > value / 3.0;
+      down += text == "P2/3" && p_variable_read(1) < value / 3.0;
+    }
+  EXPECT_GT(up, 2u);
+  EXPECT_GT(down, 2u);
+}
+
 TEST_F(Logic, RandomProgramsDoWhatTheirTreeSays) {
   std::array<unsigned, 10> met{};
   unsigned changed = 0, programs = 0;
