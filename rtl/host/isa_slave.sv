@@ -110,9 +110,9 @@ module isa_slave (
     window_flat_q <= window_flat_i;
   end
 
-  // MEMCS16# is made with these before their first edge.
+  // MEMCS16# is made with these before their first edge: of the address that the synchroniser is reset to none is hit.
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni) {window_q, slot8_q} <= 11'h0;
+    if (!rst_ni) {window_q, slot8_q} <= {10'h3FF, 1'b0};
     else         {window_q, slot8_q} <= {window_i, slot8_i};
   end
   assign host_reset_o = resetdrv;

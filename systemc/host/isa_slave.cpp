@@ -178,6 +178,7 @@ void IsaSlave::reset(Tick t) {
   sd1_ = sd2_ = wdata_ = 0;
   resetdrv_ = 0;
   straps_ = IsaStraps::none();
+  straps_.window = 0x3FF;  // not where LA is in a reset
   cycle_ = Cycle::kHold;
   byte8_ = false;
   kind_ = target_ = be_ = page_ = io_addr_ = 0;
