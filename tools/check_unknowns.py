@@ -31,7 +31,8 @@ LEAST = {"servo_ic": 0.75, "board_top": 0.4}
 # Top: memory in it, words, and the registers of what it read last.
 MEMORIES = {"board_top": [("u_core.u_dpram.u_memory", 32768, ("a_rdata_o", "b_rdata_o"))]}
 RESETS = {"rst_ni": 0, "rst_pin_ni": 0, "isa_resetdrv_i": 1}  # the level that resets
-KEPT = {"trip_i": "0", "pwr_good_i": "1", "fitted_i": "22'h3FFFFF"}  # a trip would hold everything still
+# A trip would hold everything still.
+KEPT = {"trip_i": "0", "trip_d_i": "0", "pwr_good_i": "1", "fitted_i": "22'h3FFFFF"}
 # Top: who drives its buses, cycle by cycle, so that something is written and read: the gate ICs, the latches, the
 # CPU's page, the dual-ported RAM, anything; the host's I/O block and memory.
 MASTERS = {"board_top": """

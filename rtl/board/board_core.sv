@@ -101,10 +101,11 @@ module board_core #(
   output logic             servo_o,
   output logic             phase_oe_o,
   output logic             servo_oe_o,
-  // servo ICs: reset, the bus on clk_ref_i with a select each, read data of the selected one, else 0; their clock pins;
-  // EQU of ICs 0 and 1
+  // servo ICs: reset, a trip before its edge, the bus on clk_ref_i with a select each, read data of the selected one,
+  // else 0; their clock pins; EQU of ICs 0 and 1
   output logic             rst_no,
   output logic             rst_ref_no,   // released with clk_ref_i, two clk_pwm_i edges before rst_no
+  output logic             trip_d_o,
   output logic [17:0]      ic_sel_o,
   output logic             bus_x_o,
   output logic [4:0]       bus_addr_o,
@@ -268,12 +269,11 @@ module board_core #(
     .conflict_o  (source_conflict_o)
   );
 
-  logic wd_trips;
   watchdog u_watchdog (
     .clk_ref_i, .rst_ni,
     .strobe_i (bus_we & sel_strobe),
     .servo_i, .pwr_good_i,
-    .trip_d_o (wd_trips),
+    .trip_d_o,
     .trip_o   (wd_tripped_o),
     .relay_o  (wd_relay_o)
   );
@@ -367,7 +367,7 @@ module board_core #(
   logic [3:0] signals_rdata;
   host_signals u_host_signals (
     .clk_ref_i, .rst_ni,
-    .trip_i    (wd_trips),
+    .trip_i    (trip_d_o),
     .wr_i      (bus_we & sel_signals),
     .ctrl_wr_i (bus_we & sel_ctrl),
     .wdata_i   (bus_wdata[3:0]),

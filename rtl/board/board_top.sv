@@ -96,7 +96,7 @@ module board_top #(
   output logic [7:0]       pic_elr_o
 );
 
-  logic        rst_ni, rst_ref_n;
+  logic        rst_ni, rst_ref_n, trip_d;
   logic [17:0] ic_sel, ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
   logic        bus_x, bus_we, bus_rd;
   logic [4:0]  bus_addr;
@@ -125,6 +125,7 @@ module board_top #(
         .phase_oe_o  (ic_phase_oe[i]),
         .servo_oe_o  (ic_servo_oe[i]),
         .trip_i      (wd_tripped_o),
+        .trip_d_i    (trip_d),
         .pins_i      (motor_i[Motor + motor_pins_pkg::PinsLsb +: motor_pins_pkg::PinsWidth]),
         .adc_a_i     (motor_i[Motor + motor_pins_pkg::AdcALsb +: motor_pins_pkg::AdcAWidth]),
         .adc_b_i     (motor_i[Motor + motor_pins_pkg::AdcBLsb +: motor_pins_pkg::AdcBWidth]),
@@ -175,6 +176,7 @@ module board_top #(
     .servo_oe_o    (servo_oe),
     .rst_no        (rst_ni),
     .rst_ref_no    (rst_ref_n),
+    .trip_d_o      (trip_d),
     .ic_sel_o      (ic_sel),
     .bus_x_o       (bus_x),
     .bus_addr_o    (bus_addr),
@@ -190,7 +192,7 @@ module board_top #(
   );
   // Only chips need the enables and that reset; ICs that are not built have no use for the bus.
   logic unused_core;
-  assign unused_core = &{1'b0, rst_ni, rst_ref_n, ic_sel, bus_x, bus_addr, bus_we, bus_rd, bus_wdata, phase_oe,
+  assign unused_core = &{1'b0, rst_ni, rst_ref_n, trip_d, ic_sel, bus_x, bus_addr, bus_we, bus_rd, bus_wdata, phase_oe,
                          servo_oe, equ[71:8]};
 
 endmodule : board_top

@@ -102,7 +102,7 @@ module board_chip #(
   input  wire logic [7:0]  equ_i  // EQU1 to EQU4 of servo IC 0, of servo IC 1
 );
 
-  logic        unused_rst_n, unused_x, unused_we, unused_rd;
+  logic        unused_rst_n, unused_trip_d, unused_x, unused_we, unused_rd;
   logic [17:0] unused_sel;
   logic [4:0]  unused_addr;
   logic [23:0] unused_wdata;
@@ -121,6 +121,7 @@ module board_chip #(
     .phase_i, .servo_i, .phase_o, .servo_o, .phase_oe_o, .servo_oe_o,
     .rst_no        (unused_rst_n),
     .rst_ref_no,
+    .trip_d_o      (unused_trip_d),
     .ic_sel_o      (unused_sel),
     .bus_x_o       (unused_x),
     .bus_addr_o    (unused_addr),
@@ -135,7 +136,8 @@ module board_chip #(
     .equ_i
   );
   logic unused;
-  assign unused = &{1'b0, unused_rst_n, unused_sel, unused_x, unused_addr, unused_we, unused_rd, unused_wdata};
+  assign unused = &{1'b0, unused_rst_n, unused_trip_d, unused_sel, unused_x, unused_addr, unused_we, unused_rd,
+                    unused_wdata};
 
 endmodule : board_chip
 

@@ -127,6 +127,7 @@ module servo_ic_chip (
     .phase_oe_o  (phase_oe),
     .servo_oe_o  (servo_oe),
     .trip_i,
+    .trip_d_i    (1'b0),  // the watchdog stands on another chip
     .pins_i      (motor_i[motor_pins_pkg::PinsLsb +: motor_pins_pkg::PinsWidth]),
     .adc_a_i     (motor_i[motor_pins_pkg::AdcALsb +: motor_pins_pkg::AdcAWidth]),
     .adc_b_i     (motor_i[motor_pins_pkg::AdcBLsb +: motor_pins_pkg::AdcBWidth]),

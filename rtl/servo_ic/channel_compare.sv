@@ -20,6 +20,7 @@ module channel_compare #(
   input  wire logic [11:0] fraction_i,
   input  wire logic [5:0]  we_i,         // bit 0 A, 1 B, 2 increment, 3 fraction of A, 4 fraction of B, 5 EQU
   input  wire logic [23:0] wdata_i,
+  input  wire logic        trip_d_i,     // the watchdog trips with the coming edge, or has: EQU is 0
   output logic [23:0]      a_o,
   output logic [23:0]      b_o,
   output logic [23:0]      inc_o,
@@ -71,6 +72,7 @@ module channel_compare #(
       if (we_i[3]) af_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer2CompareALsb +: 12];
       if (we_i[4]) bf_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer1CompareBLsb +: 12];
       if (we_i[5]) equ_q <= wdata_i[brick_regs_pkg::ServoChannelControlEquStateLsb];
+      if (trip_d_i) equ_q <= 1'b0;
     end
   end
 

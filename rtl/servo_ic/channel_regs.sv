@@ -14,8 +14,10 @@ module channel_regs (
   input  wire logic [23:0] wdata_i,
   output logic [23:0]      rdata_o,       // 0 when not selected
   input  wire logic        trip_i,        // commands and what says which level is off ignore writes
+  input  wire logic        trip_d_i,      // it trips with the coming edge, or has: AENA does not rise
   // written words
   output logic [23:0]      control_o,
+  output logic             aena_o,        // its bit, until a trip that was told
   output logic [23:0]      out_a_o,
   output logic [23:0]      out_b_o,
   output logic [23:0]      out_c_o,
@@ -70,7 +72,7 @@ module channel_regs (
                                        24'd1 << brick_regs_pkg::ServoChannelControlCPfmLsb;
 
   logic [23:0] control_q, out_a_q, out_b_q, out_c_q, control_kept;
-  logic        error_q, loss_q, fine, we_status, we_control;
+  logic        aena_q, error_q, loss_q, fine, we_status, we_control;
   assign fine = control_q[brick_regs_pkg::ServoChannelControlHardware1tLsb];
 
   always_comb begin
@@ -102,11 +104,14 @@ module channel_regs (
       out_a_q   <= brick_regs_pkg::ServoChannelOutAReset;
       out_b_q   <= brick_regs_pkg::ServoChannelOutBReset;
       out_c_q   <= brick_regs_pkg::ServoChannelOutCReset;
+      aena_q    <= brick_regs_pkg::ServoChannelControlReset[brick_regs_pkg::ServoChannelControlAenaLsb];
       error_q   <= 1'b0;
       loss_q    <= 1'b0;
     end else begin
       if (we_control)               control_q           <= (control_q & control_kept) | (wdata_i & ~control_kept);
       else if (control_q[EquWrite]) control_q[EquWrite] <= 1'b0;  // falls back by itself
+      if (trip_d_i)        aena_q <= 1'b0;
+      else if (we_control) aena_q <= wdata_i[brick_regs_pkg::ServoChannelControlAenaLsb];
       if (we_i && !trip_i) begin
         if ({x_i, addr_i} == OutA) out_a_q <= wdata_i;
         if ({x_i, addr_i} == OutB) out_b_q <= wdata_i;
@@ -167,6 +172,7 @@ module channel_regs (
   end
 
   assign control_o = control_q;
+  assign aena_o    = aena_q;
   assign out_a_o   = out_a_q;
   assign out_b_o   = out_b_q;
   assign out_c_o   = out_c_q;

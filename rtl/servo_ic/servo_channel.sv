@@ -16,6 +16,7 @@ module servo_channel (
   output logic [23:0]      rdata_o,         // 0 when not selected
   // from the IC
   input  wire logic        trip_i,          // the watchdog has tripped
+  input  wire logic        trip_d_i,        // it trips with the coming edge of clk_ref, or has; 0 where nobody knows
   input  wire logic [16:0] cnt_i,
   input  wire logic        turn_i,
   input  wire logic [7:0]  deadtime_i,      // I7m04
@@ -67,7 +68,6 @@ module servo_channel (
   assign hold           = control[brick_regs_pkg::ServoChannelControlCounterResetLsb];
   assign mldt           = mode == brick_regs_pkg::DecodeMldt;
   assign other          = control[brick_regs_pkg::ServoChannelControlCompareChannelLsb];
-  assign aena           = control[brick_regs_pkg::ServoChannelControlAenaLsb];
   assign gated          = control[brick_regs_pkg::ServoChannelControlGatedIndexLsb];
   assign gate_low       = control[brick_regs_pkg::ServoChannelControlGateStateLsb];
   assign demux          = control[brick_regs_pkg::ServoChannelControlIndexDemuxLsb];
@@ -158,7 +158,7 @@ module servo_channel (
     .fine_i(fine), .other_i(other), .source_fine_i(other ? fine1_i : fine),
     .count_i(other ? count1_i : count), .down_i(other ? down1_i : down), .still_i(other ? still1_i : still_o),
     .counter_i(other ? counter1_i : counter), .fraction_i(other ? fraction1_i : fraction),
-    .we_i(compare_we), .wdata_i,
+    .we_i(compare_we), .wdata_i, .trip_d_i,
     .a_o(compare_a), .b_o(compare_b), .inc_o(compare_inc),
     .a_fraction_o(a_fraction), .b_fraction_o(b_fraction), .equ_o(equ)
   );
@@ -224,8 +224,8 @@ module servo_channel (
 
   channel_regs u_regs (
     .clk_ref_i, .rst_ni,
-    .x_i, .addr_i, .sel_i, .we_i, .wdata_i, .rdata_o, .trip_i,
-    .control_o(control), .out_a_o(out_a), .out_b_o(out_b), .out_c_o(out_c), .compare_we_o(compare_we),
+    .x_i, .addr_i, .sel_i, .we_i, .wdata_i, .rdata_o, .trip_i, .trip_d_i,
+    .control_o(control), .aena_o(aena), .out_a_o(out_a), .out_b_o(out_b), .out_c_o(out_c), .compare_we_o(compare_we),
     .level_i(level), .error_i(error), .loss_i(loss), .equ_i(equ_o), .incomplete_i(incomplete),
     .captured_i(captured), .captured_gi_i(captured_gi), .hall_i(hall),
     .phase_pos_i(phase_pos), .servo_pos_i(servo_pos), .servo_t1_i(servo_t1), .servo_t2_i(servo_t2),
@@ -235,8 +235,8 @@ module servo_channel (
     .a_fraction_i(a_fraction), .b_fraction_i(b_fraction)
   );
 
-  logic unused;  // bits of EQU write and state: channel_regs has acted on them
-  assign unused = &{1'b0, control[12:11], out_a[5:0], out_b[5:0]};
+  logic unused;  // bits of AENA, EQU write and state: channel_regs has acted on them
+  assign unused = &{1'b0, control[14], control[12:11], out_a[5:0], out_b[5:0]};
 
 endmodule : servo_channel
 

@@ -17,6 +17,7 @@ module servo_channels (
   output logic [23:0]      rdata_o,       // 0 when not selected
   // from the registers and the clock chain of the IC
   input  wire logic        trip_i,
+  input  wire logic        trip_d_i,
   input  wire logic [11:0] dividers_i,
   input  wire logic [23:0] dac_strobe_i,
   input  wire logic [23:0] adc_strobe_i,
@@ -77,7 +78,7 @@ module servo_channels (
       .clk_pwm_i, .clk_ref_i, .rst_ni,
       .x_i, .addr_i(addr_i[2:0]), .sel_i(sel[n]), .we_i(we_i & sel[n]), .wdata_i,
       .read_capture_i(read_capture[n]), .rdata_o(rdata[24*n +: 24]),
-      .trip_i, .cnt_i, .turn_i, .deadtime_i,
+      .trip_i, .trip_d_i, .cnt_i, .turn_i, .deadtime_i,
       .sclk_ce_i(sclk_ce), .pfm_ce_i(pfm_ce), .phase_fall_i(phase_fall), .servo_fall_i(servo_fall),
       .dac_load_i(dac_load), .dac_shift_i(dac_shift), .adc_sample_i(adc_sample), .adc_bit_i(adc_bit),
       .count_o(count[n]), .down_o(down[n]), .still_o(still[n]), .fine_o(fine[n]),

@@ -23,7 +23,8 @@ module servo_ic (
   output logic             phase_oe_o,
   output logic             servo_oe_o,
   // channels: fields as in servo_channels
-  input  wire logic        trip_i,
+  input  wire logic        trip_i,       // the watchdog has tripped: all outputs off
+  input  wire logic        trip_d_i,     // it trips with the coming edge of clk_ref, or has; 0 where nobody knows
   input  wire logic [47:0] pins_i,
   input  wire logic [3:0]  adc_a_i,
   input  wire logic [3:0]  adc_b_i,
@@ -65,7 +66,8 @@ module servo_ic (
   servo_channels u_channels (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
     .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .rd_i, .rdata_o(channel_rdata),
-    .trip_i, .dividers_i(clock_dividers), .dac_strobe_i(dac_strobe), .adc_strobe_i(adc_strobe), .deadtime_i(deadtime),
+    .trip_i, .trip_d_i,
+    .dividers_i(clock_dividers), .dac_strobe_i(dac_strobe), .adc_strobe_i(adc_strobe), .deadtime_i(deadtime),
     .cnt_i(cnt), .turn_i(turn), .phase_rise_i(phase_rise), .phase_fall_i(phase_fall), .servo_fall_i(servo_fall),
     .pins_i, .adc_a_i, .adc_b_i,
     .pwm_o(pwm), .pulse_o(pulse), .dir_o(dir), .dac_a_o(dac_a), .dac_b_o(dac_b), .aena_o(aena), .equ_o(equ),

@@ -35,12 +35,12 @@ module channel_pwm_rules (
 );
 
   logic [5:0] pins;
-  servo_channel dut (.clk_pwm_i(clk_i), .clk_ref_i(clk_i), .rst_ni, .trip_i, .cnt_i, .turn_i, .deadtime_i, .pwm_o(pins),
-                     .x_i(1'b0), .addr_i(3'd0), .sel_i(1'b0), .we_i(1'b0), .wdata_i(24'h0), .read_capture_i(1'b0),
-                     .sclk_ce_i(1'b0), .pfm_ce_i(1'b0), .phase_fall_i(1'b0), .servo_fall_i(1'b0), .dac_load_i(1'b0),
-                     .dac_shift_i(1'b0), .adc_sample_i(1'b0), .adc_bit_i(5'd0), .count1_i(1'b0), .down1_i(1'b0),
-                     .still1_i(1'b0), .fine1_i(1'b0), .counter1_i(24'd0), .fraction1_i(12'd0), .pins_i(12'd0),
-                     .adc_a_i(1'b0), .adc_b_i(1'b0));
+  servo_channel dut (.clk_pwm_i(clk_i), .clk_ref_i(clk_i), .rst_ni, .trip_i, .trip_d_i(1'b0), .cnt_i, .turn_i,
+                     .deadtime_i, .pwm_o(pins), .x_i(1'b0), .addr_i(3'd0), .sel_i(1'b0), .we_i(1'b0), .wdata_i(24'h0),
+                     .read_capture_i(1'b0), .sclk_ce_i(1'b0), .pfm_ce_i(1'b0), .phase_fall_i(1'b0),
+                     .servo_fall_i(1'b0), .dac_load_i(1'b0), .dac_shift_i(1'b0), .adc_sample_i(1'b0),
+                     .adc_bit_i(5'd0), .count1_i(1'b0), .down1_i(1'b0), .still1_i(1'b0), .fine1_i(1'b0),
+                     .counter1_i(24'd0), .fraction1_i(12'd0), .pins_i(12'd0), .adc_a_i(1'b0), .adc_b_i(1'b0));
   // What the registers, which are free, say.
   (* hierconn *) wire logic [23:0] \dut.control , \dut.out_a , \dut.out_b , \dut.out_c ;
   // From inside, for the inductions.

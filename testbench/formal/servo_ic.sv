@@ -26,6 +26,7 @@
 module servo_ic_rules (
   input wire logic        clk_i,
   input wire logic        trip_i,
+  input wire logic        trip_d_i,
   input wire logic        sel_i,
   input wire logic        x_i,
   input wire logic [4:0]  addr_i,
@@ -45,7 +46,8 @@ module servo_ic_rules (
   logic        phase, servo, phase_oe, servo_oe;
   servo_ic dut (.clk_pwm_i(clk_i), .clk_ref_i(clk_i), .rst_ni(1'b1), .sel_i, .x_i, .addr_i, .we_i, .wdata_i,
                 .rd_i, .rdata_o(rdata), .phase_i, .servo_i, .phase_o(phase), .servo_o(servo), .phase_oe_o(phase_oe),
-                .servo_oe_o(servo_oe), .trip_i, .pins_i, .adc_a_i, .adc_b_i, .equ_o(equ_line), .motor_o(motor));
+                .servo_oe_o(servo_oe), .trip_i, .trip_d_i, .pins_i, .adc_a_i, .adc_b_i, .equ_o(equ_line),
+                .motor_o(motor));
 
   // The pins of a channel, and its control word from inside.
   (* anyconst *) logic [1:0] n;

@@ -21,6 +21,7 @@ struct Ports : PortMap {
       adc_b |= (in[n] >> kAdcB.lsb & 1) << n;
     }
     v.pins_i = pins;
+    v.trip_d_i = false;  // nobody knows of a pin before it moves
     v.adc_a_i = static_cast<CData>(adc_a);
     v.adc_b_i = static_cast<CData>(adc_b);
   }

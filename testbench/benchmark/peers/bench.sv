@@ -10,8 +10,9 @@ module bench;
   wire [63:0] motor;
   servo_ic dut (
     .clk_pwm_i(clk_pwm), .clk_ref_i(clk_ref), .rst_ni(rst_n), .sel_i(sel), .x_i(x), .addr_i(addr), .we_i(we),
-    .wdata_i(wdata), .rd_i(1'b0), .rdata_o(rdata), .phase_i(1'b1), .servo_i(1'b1), .trip_i(1'b0), .pins_i(pins),
-    .adc_a_i(4'd0), .adc_b_i(4'd0), .motor_o(motor), .phase_o(), .servo_o(), .phase_oe_o(), .servo_oe_o(), .equ_o()
+    .wdata_i(wdata), .rd_i(1'b0), .rdata_o(rdata), .phase_i(1'b1), .servo_i(1'b1), .trip_i(1'b0), .trip_d_i(1'b0),
+    .pins_i(pins), .adc_a_i(4'd0), .adc_b_i(4'd0), .motor_o(motor), .phase_o(), .servo_o(),
+    .phase_oe_o(), .servo_oe_o(), .equ_o()
   );
 
   integer now = 0, steps = 0, flip = 0, file, step, mark = 1, address, value;

@@ -16,7 +16,7 @@ class Dut:
 
     async def start(self):
         for name in ("clk_pwm_i", "clk_ref_i", "sel_i", "x_i", "addr_i", "we_i", "wdata_i", "rd_i", "trip_i",
-                     "adc_a_i", "adc_b_i"):
+                     "trip_d_i", "adc_a_i", "adc_b_i"):
             getattr(self.dut, name).value = 0
         self.dut.phase_i.value = self.dut.servo_i.value = 1
         for level in (1, 0, 1):

@@ -17,7 +17,8 @@ struct Bench : sc_core::sc_module {
     dut.sel_i(sel), dut.x_i(x), dut.addr_i(addr), dut.we_i(we), dut.wdata_i(wdata), dut.rd_i(rd), dut.rdata_o(rdata);
     dut.phase_i(phase_in), dut.servo_i(servo_in), dut.phase_o(phase), dut.servo_o(servo);
     dut.phase_oe_o(phase_oe), dut.servo_oe_o(servo_oe);
-    dut.trip_i(trip), dut.pins_i(pins), dut.adc_a_i(adc_a), dut.adc_b_i(adc_b), dut.equ_o(equ), dut.motor_o(motor_out);
+    dut.trip_i(trip), dut.trip_d_i(trip_d), dut.pins_i(pins), dut.adc_a_i(adc_a), dut.adc_b_i(adc_b);
+    dut.equ_o(equ), dut.motor_o(motor_out);
     SC_THREAD(run);
   }
 
@@ -63,7 +64,7 @@ struct Bench : sc_core::sc_module {
   std::uint64_t now = 0;
   sc_core::sc_clock clk_pwm{"clk_pwm", sc_time(2, sc_core::SC_NS), 0.5, sc_time(3, sc_core::SC_NS), true};
   sc_core::sc_clock clk_ref{"clk_ref", sc_time(6, sc_core::SC_NS), 0.5, sc_time(7, sc_core::SC_NS), true};
-  sc_signal<bool> rst_n, sel, x, we, rd, phase_in, servo_in, phase, servo, phase_oe, servo_oe, trip;
+  sc_signal<bool> rst_n, sel, x, we, rd, phase_in, servo_in, phase, servo, phase_oe, servo_oe, trip, trip_d;
   sc_signal<std::uint32_t> addr, wdata, rdata, adc_a, adc_b, equ;
   sc_signal<std::uint64_t> pins, motor_out;
   Vservo_ic dut{"dut"};

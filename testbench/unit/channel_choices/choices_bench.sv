@@ -44,7 +44,7 @@ module choices_bench (
     channel_compare #(.EquOnLeave(i == 1)) u_compare (
       .clk_ref_i, .rst_ni, .ce_i, .fine_i, .other_i, .source_fine_i(fine_i),
       .count_i, .down_i, .still_i, .counter_i, .fraction_i,
-      .we_i, .wdata_i,
+      .we_i, .wdata_i, .trip_d_i(1'b0),
       .a_o(a_o[i]), .b_o(b_o[i]), .inc_o(inc),
       .a_fraction_o(a_fraction), .b_fraction_o(b_fraction),
       .equ_o(equ_o[i])

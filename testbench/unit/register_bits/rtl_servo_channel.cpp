@@ -17,7 +17,7 @@ void drive(Vservo_channel& v, const ServoChannelInputs& in) {
   v.phase_fall_i = v.servo_fall_i = in.latch;
   v.pins_i = in.pins & 0xFFF;
   // What comes from the rest of the IC, and the pins of the ADCs, rests.
-  v.trip_i = v.turn_i = v.dac_load_i = v.dac_shift_i = v.adc_sample_i = v.adc_a_i = v.adc_b_i = false;
+  v.trip_i = v.trip_d_i = v.turn_i = v.dac_load_i = v.dac_shift_i = v.adc_sample_i = v.adc_a_i = v.adc_b_i = false;
   v.count1_i = v.down1_i = v.still1_i = v.fine1_i = false;
   v.cnt_i = v.counter1_i = 0;
   v.deadtime_i = v.adc_bit_i = 0;

@@ -10,6 +10,7 @@ namespace {
 void drive(Vservo_ic& v, const ServoIcInputs& in) {
   v.rst_ni = in.rst_n;
   v.trip_i = in.trip;
+  v.trip_d_i = in.trip_d;
   v.sel_i = in.sel;
   v.x_i = in.x;
   v.addr_i = in.addr & 31;

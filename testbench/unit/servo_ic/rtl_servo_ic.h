@@ -8,7 +8,7 @@
 namespace brick {
 
 struct ServoIcInputs {
-  bool rst_n = true, trip = false;
+  bool rst_n = true, trip = false, trip_d = false;
   bool sel = true, x = false, we = false, rd = false;
   unsigned addr = 0;
   std::uint32_t wdata = 0;

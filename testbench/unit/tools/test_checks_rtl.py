@@ -145,6 +145,7 @@ class Outputs(Planted):
     def test_each_output_of_more_than_a_flip_flop_is_named(self):
         """All at once, as above."""
         slave, port, core = "rtl/host/isa_slave.sv", "rtl/host/host_port.sv", "rtl/board/board_core.sv"
+        channel = "rtl/servo_ic/servo_channel.sv"
         for path, old, new in (
                 # IOCHRDY of two: at one edge the request goes and BUSY comes.
                 (slave, "logic        drive_q, iochrdy_q;", "logic        drive_q, iochrdy_q, busy_q;"),
@@ -154,8 +155,9 @@ class Outputs(Planted):
                 (port, "assign hreq_o = hreq_q;", "assign hreq_o = (icr_q[0] & rxdf_q) | (icr_q[1] & txde_q);"),
                 ("rtl/board/clock_select.sv", "phase_o        = phase_q;", "phase_o        = phase_q | ~phase_oe_q;"),
                 (core, "wd_led_o = wd_tripped_o;", "wd_led_o = pwr_good_i;"),
-                ("rtl/servo_ic/servo_channel.sv", "aena_o  = aena & ~trip_i;", "aena_o  = aena & ~trip_i & ~ab_inv;"),
-                ("rtl/servo_ic/servo_channel.sv", "equ_o = equ & ~trip_i;", "equ_o = equ & ~trip_i & ready;")):
+                (channel, "aena_o  = aena & ~trip_i;", "aena_o  = aena & ~trip_i & ~ab_inv;"),
+                (channel, "(pwm & pwm_on) ^ pwm_inv;", "(pwm & pwm_on & {6{~hold}}) ^ pwm_inv;"),
+                (channel, "equ_o = equ & ~trip_i;", "equ_o = equ & ~trip_i & ready;")):
             self.plant(path, old, new)
         done = self.run_tool("check_outputs.py")
         board = ("isa_iochrdy_o is made of 2 level(s), u_isa_slave.busy_q, u_isa_slave.iochrdy_q among them",
@@ -163,13 +165,15 @@ class Outputs(Planted):
                  "wd_led_o is made of 1 level(s), pwr_good_i among them",  # the pin itself
                  "phase_o is made of 2 level(s), u_clock_select.phase_oe_q, u_clock_select.phase_q among them")
         for named in (*board, *(f"board_chip: {text}" for text in board),
-                      "motor_o.equ is made of 3 level(s), gen_servo_ic[0].gen_built.u_servo_ic.u_channels.",
-                      "servo_ic_chip: motor_o.equ is made of 3 level(s), u_servo_ic.u_channels."):
+                      *(f"motor_o.{pin} is made of 3 level(s), gen_servo_ic[0].gen_built.u_servo_ic.u_channels."
+                        for pin in ("aena", "equ")),
+                      *(f"servo_ic_chip: motor_o.{pin} is made of 3 level(s), u_servo_ic.u_channels."
+                        for pin in ("aena", "equ"))):
             self.expect(done, 1, named)
-        self.assertNotIn("motor_o.aena", done.stdout)  # its row allows the control word
+        self.assertNotIn("motor_o.pwm", done.stdout)  # its row allows the control word
         *listed, count = done.stdout.splitlines()
         self.assertEqual(count.split(": ")[1], f"{len(listed)} problem(s)")
-        self.assertEqual(len(listed), 2 * len(board) + 2 * 4)
+        self.assertEqual(len(listed), 2 * len(board) + 2 * 2 * 4)
 
     def test_a_row_that_says_more_than_the_rtl_does_fails(self):
         self.plant("rtl/pins/board.pins", "cycle u_dpram.rd_ack_q u_dpram.wr_done_q", "cycle u_dpram.rd_ack_q")
