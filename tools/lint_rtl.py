@@ -65,8 +65,17 @@ def waiver_problems(root):
     return problems
 
 
+def written_twice(text):
+    """Variables that two always_ff write: an error in IEEE 1800 (9.2.2.4), which the three tools here let pass."""
+    blocks = re.findall(r"\balways_ff\b(.*?)(?=\b(?:always\w*|assign|endmodule|initial)\b)", text, flags=re.S)
+    target = re.compile(r"(?:;|\bbegin|\belse|\)|:)\s*(\{[^{};]*\}|[A-Za-z_]\w*)(?:\s*\[[^\];]*\])*\s*<=")
+    written = [{name for found in target.findall(block) for name in re.findall(r"[A-Za-z_]\w*", found)}
+               for block in blocks]
+    return sorted({name for i, one in enumerate(written) for other in written[:i] for name in one & other})
+
+
 def module_problems(root, modules):
-    """One module a file, named after it, `default_nettype none, no import, no latch, no initial block."""
+    """One module a file, named after it, `default_nettype none, no import, no latch, no initial block, one writer."""
     problems = []
     for file in modules:
         text = without_comments((root / file).read_text())
@@ -79,6 +88,8 @@ def module_problems(root, modules):
             problems.append(f"{file}: import: qualify the name instead, Yosys reads no import")
         if re.search(r"\b(always_latch|initial)\b", text) and file.stem not in SIMULATION_ONLY:
             problems.append(f"{file}: latch or initial block in synthesizable code")
+        problems += [f"{file}: two always_ff write {name}; expected one, or plain always blocks"
+                     for name in written_twice(text)]
     return problems
 
 

@@ -21,12 +21,13 @@ module dpram_memory (
 
   logic [15:0] mem [0:32767];
 
-  always_ff @(posedge a_clk_i) begin
+  // Two plain blocks: what an always_ff writes nobody else may (IEEE 1800, 9.2.2.4), and vendors' tools keep to that.
+  always @(posedge a_clk_i) begin
     if (a_we_i)      mem[a_addr_i] <= a_wdata_i;
     else if (a_re_i) a_rdata_o <= mem[a_addr_i];
   end
 
-  always_ff @(posedge b_clk_i) begin
+  always @(posedge b_clk_i) begin
     if (b_we_i[0]) mem[b_addr_i][7:0]  <= b_wdata_i[7:0];
     if (b_we_i[1]) mem[b_addr_i][15:8] <= b_wdata_i[15:8];
     if (b_re_i && b_we_i == 2'b00) b_rdata_o <= mem[b_addr_i];

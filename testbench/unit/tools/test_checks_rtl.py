@@ -31,6 +31,17 @@ class Lint(Tree):
         self.write("rtl/board/board_top.sv", latch.replace("output wire", "output logic"))
         self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "latch or initial block")
 
+    def test_a_variable_of_two_always_ff_fails(self):
+        """Verilator warns where their clocks differ, for which rtl/lint.vlt has a waiver."""
+        both = ("`default_nettype none\nmodule board_top (input wire a_i, b_i, output logic [1:0] q_o);\n"
+                "  always_ff @(posedge a_i) if (b_i) q_o[0] <= ~q_o[0];\n  always_ff @(posedge b_i) begin\n"
+                "    if (a_i) {q_o[1]} <= 1'b0;\n  end\nendmodule : board_top\n")
+        self.write("rtl/lint.vlt", "`verilator_config\n// a memory\nlint_off -rule MULTIDRIVEN -file \"*\"\n")
+        self.write("rtl/board/board_top.sv", both)
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "board_top.sv: two always_ff write q_o")
+        self.write("rtl/board/board_top.sv", both.replace("always_ff", "always"))
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 0, "clean")
+
     @unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
     def test_yosys_fails_on_an_undriven_net(self):
         self.write("rtl/board/board_top.sv", self.GOOD.replace("= a_i;", "= a_i ^ c;\n  wire c;"))
