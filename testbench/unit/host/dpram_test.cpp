@@ -54,6 +54,43 @@ TEST_F(DpramTest, WordOfAReadOfTheHostStaysThroughWrites) {
   EXPECT_EQ(host_read(6), 0x4321u);
 }
 
+// docs/dpram.md, a host's side of one's own.
+TEST_F(DpramTest, AHostsSideOfOnesOwnIsGrantedAtItsFirstEdgeAndAnewBehindAGap) {
+  for (const bool with_select : {false, true}) {
+    const unsigned value = with_select ? 0x1111 : 0x2222;
+    host_start(6, false);
+    both.ref();
+    both.in.mem_sel = with_select;  // at the edge of the write
+    both.in.mem_wr = true;
+    both.in.mem_wdata = static_cast<std::uint16_t>(value);
+    both.in.mem_be = 3;
+    both.ref();
+    both.in.mem_sel = both.in.mem_wr = false;
+    both.ref();
+    host_start(6, true);
+    both.ref();
+    EXPECT_EQ(both.get("mem_rdata"), value) << "behind one edge";
+    host_end_read();
+  }
+  host_write(7, 0x3333);
+  host_start(6, true);
+  both.ref();
+  both.in.mem_addr = 7;
+  both.ref(2);
+  EXPECT_EQ(both.get("mem_rdata"), 0x1111u) << "without a gap the word of the first";
+  host_end_read();
+  EXPECT_EQ(host_read(7), 0x3333u);
+  // A write at the edge that would grant it comes too early.
+  host_start(7, false);
+  both.in.mem_wr = true;
+  both.in.mem_wdata = 0x4444;
+  both.in.mem_be = 3;
+  both.ref();
+  both.in.mem_wr = false;
+  host_end_read();
+  EXPECT_EQ(host_read(7), 0x3333u);
+}
+
 TEST_F(DpramTest, CpuWriteWaitsForTheThirdEdgeAndIsMadeTwoLater) {
   cpu_start_write(6, 0x4321);
   for (int tick = 0; tick < 3; ++tick) {
