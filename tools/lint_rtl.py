@@ -74,8 +74,18 @@ def written_twice(text):
     return sorted({name for i, one in enumerate(written) for other in written[:i] for name in one & other})
 
 
+def chosen_targets(text):
+    """Assignments in always_comb to a bit that a signal chooses: Yosys makes a carry chain of 32 bits of each, a fifth
+    of the longest path of the 8259. A shifted 1 says the same in a few LUTs."""
+    blocks = re.findall(r"\balways_comb\b(.*?)(?=\b(?:always\w*|assign|endmodule|initial)\b)", text, flags=re.S)
+    loops = set(re.findall(r"\b(?:int|genvar)(?:\s+unsigned)?\s+(\w+)", text))
+    target = re.compile(r"(?:;|\bbegin|\belse|\)|:)\s*([A-Za-z_]\w*\s*\[\s*([a-z_]\w*)\b(?!\s*::)[^\]]*\]*)\s*=[^=]")
+    return sorted({whole for block in blocks for whole, index in target.findall(block) if index not in loops})
+
+
 def module_problems(root, modules):
-    """One module a file, named after it, `default_nettype none, no import, no latch, no initial block, one writer."""
+    """One module a file, named after it, `default_nettype none, no import, no latch, no initial block, one writer, no
+    chosen target."""
     problems = []
     for file in modules:
         text = without_comments((root / file).read_text())
@@ -88,6 +98,8 @@ def module_problems(root, modules):
             problems.append(f"{file}: import: qualify the name instead, Yosys reads no import")
         if re.search(r"\b(always_latch|initial)\b", text) and file.stem not in SIMULATION_ONLY:
             problems.append(f"{file}: latch or initial block in synthesizable code")
+        problems += [f"{file}: a signal chooses the bit {target} that is assigned; expected a shifted 1"
+                     for target in chosen_targets(text)]
         problems += [f"{file}: two always_ff write {name}; expected one, or plain always blocks"
                      for name in written_twice(text)]
     return problems

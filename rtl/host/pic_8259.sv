@@ -89,7 +89,7 @@ module pic_8259 (
     // A line that is low now arms its next edge, whatever clears it.
     armed_w  = armed_q;
     if (ocw2 && ocw2_end && (ocw2_specific || !rank_serviced[3])) begin
-      isr_w[ocw2_level] = 1'b0;
+      isr_w = isr_w & ~(8'd1 << ocw2_level);
       if (ocw2_turn) lowest_w = ocw2_level;
     end
     if (ocw2 && !ocw2_end) begin
@@ -110,8 +110,8 @@ module pic_8259 (
     isr_d    = isr_w;
     lowest_d = lowest_w;
     if (ack) begin
-      armed_d[level_ack] = 1'b0;
-      if (!aeoi_q) isr_d[level_ack] = 1'b1;
+      armed_d = armed_w & ~(8'd1 << level_ack);
+      if (!aeoi_q) isr_d = isr_w | (8'd1 << level_ack);
       else if (turn_q) lowest_d = level_ack;
     end
   end

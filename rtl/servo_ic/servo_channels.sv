@@ -64,9 +64,8 @@ module servo_channels (
 
   logic [3:0] sel, read_capture;
   always_comb begin
-    sel          = 4'd0;
+    sel          = {3'd0, sel_i} << addr_i[4:3];
     read_capture = 4'd0;
-    if (sel_i) sel[addr_i[4:3]] = 1'b1;
     if (rd_i && x_i && addr_i[2:0] == brick_regs_pkg::ServoChannelFlagPositionAddr[2:0]) read_capture = sel;
   end
 

@@ -12,8 +12,8 @@
 //   - (rank_request < rank_serviced)
 //   + (rank_request <= rank_serviced) & ~rank_request[3]
 // fault R4: an acknowledged line need not fall (rtl/host/pic_8259.sv)
-//   - armed_d[level_ack] = 1'b0
-//   + armed_d[level_ack] = 1'b1
+//   - armed_d = armed_w & ~(8'd1 << level_ack)
+//   + armed_d = armed_w | (8'd1 << level_ack)
 // fault R5: a spurious acknowledge puts IR7 in service (rtl/host/pic_8259.sv)
 //   - pending & (rd_poll | (rd_i & (addr_i == Acknowledge)))
 //   + rd_poll | (rd_i & (addr_i == 2'd2))

@@ -42,6 +42,15 @@ class Lint(Tree):
         self.write("rtl/board/board_top.sv", both.replace("always_ff", "always"))
         self.expect(self.run_tool("lint_rtl.py", "verilator"), 0, "clean")
 
+    def test_a_bit_that_a_signal_chooses_fails(self):
+        chosen = ("`default_nettype none\nmodule board_top (input wire [1:0] a_i, output logic [3:0] q_o);\n"
+                  "  always_comb begin\n    q_o = 4'd0;\n    if (a_i != 2'd3) q_o[a_i] = 1'b1;\n  end\n"
+                  "endmodule : board_top\n")
+        self.write("rtl/board/board_top.sv", chosen)
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "a signal chooses the bit q_o[a_i] that is assigned")
+        self.write("rtl/board/board_top.sv", chosen.replace("q_o[a_i] = 1'b1", "q_o = 4'd1 << a_i"))
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 0, "clean")
+
     @unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
     def test_yosys_fails_on_an_undriven_net(self):
         self.write("rtl/board/board_top.sv", self.GOOD.replace("= a_i;", "= a_i ^ c;\n  wire c;"))
