@@ -7,6 +7,8 @@ of them that change with one edge in opposite directions show a level between th
 and do not count. An output that is made of more has all of it in its row of rtl/pins, `sampled`:
   REASON SOURCES     flip-flops and pins, for a reason of the table why what shows between edges harms nobody
   through SOURCES    pins and strobes that it follows without a clock (tools/check_cdc.py)
+Flip-flops of the reason `off` are turned off by the trip of the watchdog with its very edge: on a board that has one
+what goes into them is made of it, too.
 Pins of the group `inner` are on no card. A row that says more than the RTL does is a problem too. Exit status 0, 1:
 problems, 77: no Yosys.
 """
@@ -20,6 +22,7 @@ from check_cdc import FLIP_FLOPS, TOPS, Rules, Walk, netlist
 from common import ROOT, finish, skip
 from rows import Table
 
+TRIP = "u_watchdog.trip_q"
 BITWISE = {"$and", "$or", "$xor", "$xnor", "$not", "$pos", "$mux"}  # bit i of the output is of bits i of the inputs
 
 
@@ -55,6 +58,12 @@ class Sources:
             elif not self.strap(self.names[at]):
                 found.add(at)
         return found
+
+
+    def into(self, bit):
+        """Names of what goes into a flip-flop with the next edge."""
+        cell, place = self.driver[bit]
+        return {self.names[one] for one in self.of(cell["connections"]["D"][place])}
 
 
 class Rows:
@@ -98,6 +107,11 @@ def check(module, root, top, used):
                 continue
             needs = {sources.names[one]: allowed(found, sources.names[one]) for one in made}
             used.update(*needs.values())
+            late = sorted(sources.names[one] for one in made - sources.pins.keys() if top == "board_top" and
+                          any(kind == "off" for _, kind, _ in needs[sources.names[one]]) and
+                          TRIP not in sources.into(one))
+            problems |= {f"{name}: {source} may rise with the edge of a trip; expected that {TRIP} turns it off with it"
+                         for source in late}
             unsaid = sorted(source for source, needed in needs.items() if not needed)
             if unsaid:
                 problems.add(f"{name} is made of {len(made)} level(s), {', '.join(unsaid)} among them; expected one "

@@ -195,6 +195,13 @@ class Outputs(Planted):
         self.assertEqual(count.split(": ")[1], f"{len(listed)} problem(s)")
         self.assertEqual(len(listed), 2 * len(board) + 2 * 2 * 4)
 
+    def test_what_may_rise_with_the_edge_of_a_trip_is_named(self):
+        self.plant("rtl/board/board_top.sv", ".trip_d_i    (trip_d)", ".trip_d_i    (1'b0)")
+        done = self.run_tool("check_outputs.py")
+        channel = "gen_servo_ic[0].gen_built.u_servo_ic.u_channels.gen_channel[0].u_channel"
+        for pin, source in (("aena", "u_regs.aena_q"), ("equ", "u_compare.equ_q")):
+            self.expect(done, 1, f"motor_o.{pin}: {channel}.{source} may rise with the edge of a trip")
+
     def test_a_row_that_says_more_than_the_rtl_does_fails(self):
         self.plant("rtl/pins/board.pins", "cycle u_dpram.rd_ack_q u_dpram.wr_done_q", "cycle u_dpram.rd_ack_q")
         self.plant("rtl/pins/board.pins", "flag u_clock_select.conflict_q", "flag u_dpram.* u_clock_select.conflict_q")
