@@ -42,7 +42,7 @@ def netlist(root, top):
         out = pathlib.Path(folder) / "netlist.json"
         script = (f"read_verilog -sv {sources}; {f'chparam {TOPS[top]} {top};' if TOPS[top] else ''} "
                   f"hierarchy -check -top {top}; "
-                  f"proc; flatten; opt_clean; write_json {out}")
+                  f"proc; setattr -mod -unset keep_hierarchy; flatten; opt_clean; write_json {out}")
         done = subprocess.run(["yosys", "-q", "-p", script], cwd=root, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode != 0:

@@ -2,10 +2,12 @@
 // reads IRR, ISR or the poll byte; 1 writes ICW2 to ICW4 and OCW1 and reads IMR or the poll byte; a read of 2 is the
 // acknowledge cycle and gives the vector. rd_i is high for the one clk_ref that takes rdata_o, so that what is read and
 // what the read does are of one moment. Lines pass two flip-flops, INT is a third, in host_interrupt. Cascading and the
-// three-byte acknowledge of 8080 systems are not built: their bits are taken without effect. Clock clk_ref_i,
-// asynchronous reset, after which nothing is enabled. docs/pic_8259.md.
+// three-byte acknowledge of 8080 systems are not built: their bits are taken without effect. Synthesis keeps it apart:
+// merged with who uses served_o, the read gets into the ranks of INT. Clock clk_ref_i, asynchronous reset, after which
+// nothing is enabled. docs/pic_8259.md.
 `default_nettype none
 
+(* keep_hierarchy = "true" *)
 module pic_8259 (
   input  wire logic       clk_ref_i,
   input  wire logic       rst_ni,
