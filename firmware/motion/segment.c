@@ -126,6 +126,8 @@ static bool go_ahead(uint32_t cs, bool alone) {
   const bool room = ahead < q->most, hurry = q->handed && ahead <= q->least;
   const bool soon = hurry || (q->handed && ahead <= q->least + 1u && !s->next_valid && !path_is_full(cs));
   const bool grows = !q->made && !lookahead_is_full(cs);
+  /* lines are calculated until then, and no more before what still executes has come to its end */
+  const bool begins = !q->handed && (q->made || segment_ring_lasts(cs, q->least + 2u) <= q->least + 1u);
   if (room && release(cs, false)) return true;
   /* a long sweep is not waited for: what the one before it has found still holds */
   if (q->handed && ahead <= (q->least + 1u) / 2u && lookahead_is_sweeping(cs)) {
@@ -140,10 +142,10 @@ static bool go_ahead(uint32_t cs, bool alone) {
     if (segment_points_make(cs, false)) return true;
     if (!alone) return false;
     /* what is known will not be more for now */
-    if (!q->handed && lookahead_sweep(cs, true)) return true;
-    if (!q->handed && room && release(cs, true)) return true;
+    if (begins && lookahead_sweep(cs, true)) return true;
+    if (begins && room && release(cs, true)) return true;
   }
-  if (!q->handed && q->unhanded != 0) {
+  if (begins && q->unhanded != 0) {
     segment_ring_hand_over(cs);
     return true;
   }

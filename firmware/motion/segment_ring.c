@@ -14,6 +14,24 @@ uint32_t segment_ring_ahead(uint32_t cs) {
   return ring->added - ring->executing + sequences[cs].unhanded;
 }
 
+uint32_t segment_ring_lasts(uint32_t cs, uint32_t enough) {
+  struct piece_ring* ring = &coordinate_systems[cs].ring;
+  const int64_t period = sequences[cs].period;
+  const uint32_t state = hal_mask_servo();
+  uint32_t number = ring->executing, segments = 0;
+  int64_t time = piece_ring_is_empty(ring) ? 0 : -ring->elapsed;
+  hal_unmask(state);
+  const uint32_t end = ring->added;
+  while (segments < enough && (time > 0 || number != end)) {
+    if (time > 0)
+      segments++, time -= period;
+    else
+      time += piece_ring_at(ring, number++)->time;
+  }
+  slice_pause();
+  return segments;
+}
+
 void segment_ring_line(uint32_t cs, struct program_trace* trace) {
   const struct path_line* line = &piece_lines[cs][coordinate_systems[cs].ring.executing % PIECES];
   trace->depth = line->called ? 1u : 0u;

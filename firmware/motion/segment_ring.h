@@ -9,7 +9,9 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/lookahead.h"
 
-uint32_t segment_ring_ahead(uint32_t cs);                               /* pieces that are not executed */
+uint32_t segment_ring_ahead(uint32_t cs); /* pieces that are not executed */
+/* How many segments at full speed take as long as what the servo task has; no more than `enough` are counted. */
+uint32_t segment_ring_lasts(uint32_t cs, uint32_t enough);
 void segment_ring_add(uint32_t cs, const struct lookahead_piece* from); /* 0: of the last control points */
 void segment_ring_hand_over(uint32_t cs);
 /* Those that the servo task does not come to within SHORT_MS are not made after all. */

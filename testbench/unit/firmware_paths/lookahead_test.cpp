@@ -317,6 +317,38 @@ TEST_F(Lookahead, ARotaryBufferThatRunsEmptyStopsOnceAtItsEnd) {
   EXPECT_GT(slow.front(), 4000 - 5 * 5 / 2.0 - 10) << "5 counts/ms at 1 count/ms^2 are 12.5 counts";
 }
 
+// Lines that come again while the motors still run out are calculated meanwhile, not when these stand: behind the stop
+// that could not be helped the path is one.
+TEST_F(Lookahead, LinesThatComeWhileAPathRunsOutNeedOneStop) {
+  unsigned stopped = 0;
+  for (unsigned behind = 92; behind < 220; behind += 8) {
+    SCOPED_TRACE(behind);
+    platform::power_up();
+    fit({"X"});
+    ASSERT_EQ(host("I5113=5 I5120=8 I116=24 I117=0.5"), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 40,0 DEFINE ROTARY 100 B0 OPEN ROTARY"), "");
+    ASSERT_EQ(host("INC LINEAR TA4 TS0 TM5"), "");
+    for (int i = 0; i < 40; ++i) ASSERT_EQ(host("X100"), "");
+    ASSERT_EQ(host("&1R"), "");
+    while (host("PR") != "0") platform::servo_ticks(1);
+    platform::servo_ticks(behind);
+    unsigned stops = 0;
+    double before = at(1), speed = 0;
+    for (unsigned tick = 0; tick < 1500; ++tick) {
+      if (tick % 3 == 0 && tick < 60) { ASSERT_EQ(host("X100"), ""); }
+      platform::servo_ticks(1);
+      const double now = (at(1) - before) / kTickMs;
+      before = at(1);
+      stops += speed >= 1 && now < 1 && before < 5900;
+      speed = now;
+    }
+    EXPECT_EQ(motors[0].trajectory, 6000 * 3072LL);
+    EXPECT_LE(stops, 1u);
+    stopped += stops;
+  }
+  EXPECT_GE(stopped, 16u) << "lines have come too early to show anything";
+}
+
 // A host that stops sending in time: the move ends at rest; a little later it goes on.
 TEST_F(Lookahead, AStarvedRotaryBufferEndsItsMovesWithinTheLimits) {
   fit({"1000X"});
