@@ -216,7 +216,7 @@ class Pads(unittest.TestCase):
 
 
 # A, B, C, FAULT, HMFL, PLIM, MLIM, USER, W, V, U, T
-FOUR_CHANNELS = ["DOWN", "UP", *["DOWN"] * 5, *["UP"] * 5] * 4
+FOUR_CHANNELS = ["DOWN", "UP", "DOWN", "UP", *["DOWN"] * 3, *["UP"] * 5] * 4
 
 
 def pulls(lpf):
@@ -226,7 +226,7 @@ def pulls(lpf):
 
 
 class Pulls(unittest.TestCase):
-    """servo-ic:5.15/6: T, U, V, W, USER and B of each channel read 1 when open, its other flags 0."""
+    """servo-ic:5.15/6: T, U, V, W, USER, B and FAULT of each channel read 1 when open, its other flags 0."""
 
     def test_each_chip_with_a_motor_side_has_them(self):
         for top in ("brick_ecp5", "servo_ic_chip_ecp5"):
