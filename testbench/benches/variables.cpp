@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "systemc/machine/board_family.h"
 #include "testbench/benches/benches.h"
 
 namespace brick {
@@ -20,6 +21,7 @@ struct Group {
   unsigned lock;  // bit of I41
   std::int64_t value;
 };
+constexpr unsigned kIsx20 = 5120;
 constexpr Group kGroups[] = {
     {65, 1, 1, 24, false, false, 0, 0},          // user marker
     {69, 1, 1, 24, false, true, 0, 0},           //
@@ -33,7 +35,7 @@ constexpr Group kGroups[] = {
     {188, 32, 100, 8, false, false, 1, 0},       // Ixx88
     {192, 32, 100, 23, false, false, 1, 10},     // Ixx92
     {172, 32, 100, 11, false, false, 1, 1365},   // Ixx72
-    {5120, 16, 100, 16, false, false, 2, 0},     // Isx20
+    {kIsx20, 16, 100, 16, false, false, 2, 0},   // Isx20
     {5188, 16, 100, 23, false, false, 2, 50},    // Isx88
     {5194, 16, 100, 23, false, false, 2, 1644},  // Isx94
     {5001, 48, 1, 24, false, true, 0, 0},        // gather sources
@@ -100,11 +102,13 @@ class Store {
     const unsigned first = g.first + at * g.step;
     const std::string number = value >= 0 && random(2) == 0 ? fmt::format("${:X}", value) : std::to_string(value);
     command(fmt::format("I{},{},{}={}", first, count, g.step, number));
-    for (unsigned i = 0; i < count; ++i) {
+    // on a Geo PMAC it is one value under all its numbers (firmware:3.8)
+    const bool alike = g.first == kIsx20 && (b_.board.product & kProductGeoPmac) != 0;
+    for (unsigned i = alike ? 0 : at; i < (alike ? g.count : at + count); ++i) {
       if ((g.lock & locks_) != 0) continue;
       std::int64_t kept = value & ((std::int64_t{1} << g.bits) - 1);
       if (g.with_sign && (kept >> (g.bits - 1)) != 0) kept -= std::int64_t{1} << g.bits;
-      i_[first + i * g.step] = kept;
+      i_[g.first + i * g.step] = kept;
     }
   }
 
