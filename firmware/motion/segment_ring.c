@@ -55,7 +55,7 @@ void segment_ring_hand_over(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   const uint32_t state = hal_mask_servo();
-  const bool late = is_late(cs);
+  const bool late = piece_ring_is_empty(&s->ring) && is_late(cs);
   if (late)
     s->failure = RUN_TIME_LATE;
   else if (!q->handed)

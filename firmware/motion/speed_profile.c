@@ -29,7 +29,9 @@ static double change_distance(const struct speed_limits* l, double from, double 
   slice_pause();
   const double mean = (from + to) / 2.0;
   slice_pause();
-  return mean * time;
+  const double distance = mean * time;
+  slice_pause();
+  return distance;
 }
 
 /* From `from` over `to` to rest, without a stay. */

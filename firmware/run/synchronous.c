@@ -96,11 +96,10 @@ enum executed synchronous_add(uint32_t cs, const struct instruction* in) {
   return executor_pass(&p->x);
 }
 
-/* The move that was planned last, if segments make it; null: it is the calculated one. */
+/* The move that was planned last, if segments make it; null: it is the calculated one, which comes behind all of them.
+ */
 static const struct path_move* of_segments(uint32_t cs) {
-  if (paths[cs].count == 0) return 0;
-  const struct path_move* last = path_of(&paths[cs], paths[cs].count - 1u);
-  return last->number == coordinate_systems[cs].planned ? last : 0;
+  return paths[cs].count == 0 ? 0 : path_of(&paths[cs], paths[cs].count - 1u);
 }
 
 bool synchronous_is_move(uint32_t cs) {

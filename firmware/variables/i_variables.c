@@ -13,6 +13,7 @@
 #include "firmware/variables/i_table.h"
 
 #define TIMER_LOWEST (-8388608)
+#define TIMER_LOOK 256u /* servo interrupts from one look at a timer to the next */
 enum { CONFIGURATION_COUNT = I4909_CPU_IDENTIFICATION + 1 - I_BASE_SYSTEM }; /* the others are 0 */
 
 static double value_of[VARIABLE_COUNT];
@@ -74,9 +75,12 @@ void i_timer_write(uint32_t number, int32_t value) {
   hal_unmask(state);
 }
 
-/* One a pass. */
+/* One at a time. */
 void i_timers_pass(void) {
-  static uint32_t turn; /* B */
+  static uint32_t turn, looked; /* B */
+  const uint32_t now = tasks_servo_count();
+  if (now - looked < TIMER_LOOK) return;
+  looked = now;
   const uint32_t number = i_cs(turn / ISX11_TIMERS_COUNT, ISX11_TIMERS) + turn % ISX11_TIMERS_COUNT;
   const uint32_t state = hal_mask_real_time();
   if (timer_read(number) == TIMER_LOWEST) i_timer_write(number, TIMER_LOWEST);

@@ -214,12 +214,16 @@ TEST_F(LiveWords, PartOfATimerIsSet) {
 
 // The servo count comes round after 2^32 interrupts: as long as none begins again what has run down does not either.
 TEST_F(LiveWords, TimersThatHaveRunDownStayThere) {
-  platform::servo_ticks(100);
+  constexpr unsigned kBegan = 12'000, kLook = 256;
+  platform::servo_ticks(kBegan);
   ASSERT_EQ(host("I6611=1000 I6612=5"), "");
-  tasks_initialize();  // 2^32 - 100 interrupts later
+  tasks_initialize();  // 2^32 - kBegan interrupts later
   EXPECT_EQ(host("I6611..6612"), "-8388608|-8388608");
-  platform::background(2 * COORDINATE_SYSTEMS);
-  platform::servo_ticks(110);
+  for (unsigned timer = 0; timer < 2 * COORDINATE_SYSTEMS; ++timer) {
+    platform::servo_ticks(kLook);
+    platform::background(1);
+  }
+  platform::servo_ticks(kBegan + 10 - 2 * COORDINATE_SYSTEMS * kLook);
   EXPECT_EQ(host("I6611..6612"), "-8388608|-8388608");
   ASSERT_EQ(host("I6611=1000"), "");
   platform::servo_ticks(10);

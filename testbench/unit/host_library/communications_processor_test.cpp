@@ -25,20 +25,25 @@ TEST_F(CommunicationsProcessorTest, LinesInOnePacketAreAnsweredTogether) {
 
 // ethernet:4/13
 TEST_F(CommunicationsProcessorTest, ControlCharactersInsideALine) {
-  std::string seen;
+  std::string seen, before;
   fake().control = [&](char c) {
     seen.push_back(c);
+    if (c == 0x12) before = fake().line;
     return c == 0x10 ? Bytes("0 0\r\x06") : Bytes();
   };
   EXPECT_EQ(response("\x01\n"), "\x06") << "^A and an empty line";
   EXPECT_EQ(response("\x0B"), "\x06");
   EXPECT_EQ(seen, "\x01\x0B");
+  EXPECT_EQ(response("=1\x12"
+                     "2"),
+            "\x06");
+  EXPECT_EQ(before, "=1") << "what has no answer goes where it stands";
   EXPECT_EQ(response("=1\x10"
                      "2"),
             "0 0\r\x06");
   EXPECT_EQ(fetch(), "\x06");
   EXPECT_EQ(response("junk\x18ver"), "ver\r\x06");
-  EXPECT_EQ(lines_, (Lines{"", "", "=12", "ver"}));
+  EXPECT_EQ(lines_, (Lines{"", "", "=12", "=12", "ver"}));
 }
 
 TEST_F(CommunicationsProcessorTest, SendLineIsConfirmedAndItsAnswerWaits) {

@@ -41,7 +41,7 @@ class UnusedFields(unittest.TestCase):
         self.assertEqual(self.problems(), ["servo_channel.extra", "servo_channel.status.spare", "code decode.Sine"])
 
     def test_a_field_that_rtl_and_model_write_as_a_number_is_named(self):
-        self.replace("rtl/servo_ic/servo_channel.sv", "brick_regs_pkg::ServoChannelControlAenaLsb", "14")
+        self.replace("rtl/servo_ic/channel_regs.sv", "brick_regs_pkg::ServoChannelControlAenaLsb", "14")
         self.assertEqual(self.problems(), [], "the model uses it")
         self.replace("systemc/servo_ic/servo_channel.h", "channel_control::kAena", "kBit14")
         self.assertEqual(self.problems(), ["servo_channel.control.aena"])

@@ -106,7 +106,8 @@ TEST_P(ReadOut, OfProgramsInParts) {
       const unsigned last = lines.rbegin()->first;
       start = last > start ? last : last + 1;
     }
-    ASSERT_EQ(lines.size(), kLines) << program;
+    ASSERT_EQ(lines.size(), kLines + 1) << program;
+    EXPECT_EQ(lines[kWords * kLines], "RET") << "of CLOSE";
     for (unsigned line = 0; line < kLines; ++line)
       EXPECT_EQ(lines[kWords * line], "P" + std::to_string(100 + line) + "=P1+" + std::to_string(line + 1));
     EXPECT_GE(parts, 2u);
