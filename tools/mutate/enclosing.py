@@ -68,7 +68,9 @@ def of_verilog(source):
 
 def of_c(file, options):
     """(source, spans) of a file of C or C++, with the options of its compiler."""
-    finder = (c_source.Finder if file.suffix == ".c" else cpp_source.Finder)(file, options)
+    # the name of a header does not say it
+    is_c = file.suffix == ".c" or any(re.match(r"-std=(c|gnu)\d", option) for option in options)
+    finder = c_source.Finder(file, [*options, "-xc"]) if is_c else cpp_source.Finder(file, options)
     found = []
 
     def walk(node, in_body):

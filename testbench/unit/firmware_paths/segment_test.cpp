@@ -533,6 +533,7 @@ TEST_F(Segments, AnAbortForgetsThem) {
   });
   platform::servo_ticks(300);
   EXPECT_LT(motors[0].trajectory, 3000 * 3072);
+  EXPECT_FALSE(segment_is_left(0));
   EXPECT_EQ(host("&1B1R"), "");
   platform::servo_ticks(3000);
   EXPECT_EQ(motors[0].trajectory, 4000 * 3072);

@@ -80,6 +80,9 @@ class Places(unittest.TestCase):
             file = pathlib.Path(folder) / "f.c"
             file.write_bytes(C)
             source, spans = enclosing.of_c(file, [])
+            header = file.with_suffix(".h")
+            header.write_bytes(C)
+            self.assertEqual(enclosing.of_c(header, ["-std=c11"]), (source, spans), "a header of C")
         self.assertEqual(span(source, spans, b"a + b", b"a - b"), ("a + b", "a - b", False))
         self.assertEqual(span(source, spans, b"sum > 3", b"sum > 4"), ("if (sum > 3) sum = 3;", "if (sum > 4) sum = 3;",
                                                                       True))
