@@ -196,7 +196,7 @@ TEST_P(MovingFaults, SignalsOfMotorsAreAtThePins) {
   wait(ms_to_ticks(40));  // 32 counts/ms: beyond 1000 counts, not yet 2000
   EXPECT_EQ(pins(), "010");
   wait(ms_to_ticks(40));
-  EXPECT_EQ(pins(), "001") << "tripped";
+  EXPECT_EQ(pins(), "011") << "tripped, and the warning stands with that";
   EXPECT_TRUE(all_off());
 }
 
