@@ -320,6 +320,19 @@ TEST_F(Pic8259Clocks, LineThatIsHighAtAResetHasNoEdgeBeforeItHasBeenLow) {
   }
 }
 
+// A poll that nobody has fetched is forgotten: the next read is of the IRR.
+TEST_F(Pic8259Clocks, AResetForgetsAPoll) {
+  initialize();
+  write(kCommand, 0x0C);
+  both.in = {};
+  both.reset();
+  settle();
+  line(5, true);
+  settle();
+  EXPECT_EQ(read(kCommand), 0x20u);
+  EXPECT_LOCKSTEP(both);
+}
+
 // systemc/core/model_block.h: as long as all inputs rest and nothing will show, no edge is asked for.
 TEST_F(Pic8259Clocks, SleepsWhileNothingMoves) {
   initialize();
