@@ -76,7 +76,7 @@ static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
   jog_not_ready(motor);
   b->requests = j->requests;
   b->motion = j->request;
-  b->rate = coordinate_systems[m->cs].increment;
+  b->rate = m->path == PATH_OWN ? j->rate : coordinate_systems[m->cs].increment;
   b->leaves = b->motion.aim == AIM_RAMP && (m->path == PATH_SYSTEM || jog_now(j)->by_program);
   b->begins = j->clock + (int64_t)j->rate * (int64_t)cycles;
   if (b->begins < j->request_begins) b->begins = j->request_begins;

@@ -189,6 +189,32 @@ TEST_F(RampsAndTime, AJogInPlaceOfTheRampLeavesThePathAsItGoes) {
     }
 }
 
+// A jog that is to follow the ramp of an abort, and another abort in its place: that begins as fast as the motor is.
+TEST_F(RampsAndTime, AnotherAbortOnTheRampOfOneKeepsItsRate) {
+  for (const char* hold : {"H", "%50", "%150"})
+    for (const char* jog : {"#1J-", "#1J/", "#1J:100"}) {
+      SCOPED_TRACE(hold + std::string(jog));
+      begin(kPrograms[0]);
+      ASSERT_EQ(host("I5194=1000 I5195=1000 I192=2"), "");
+      ASSERT_EQ(host(hold), "");
+      ticks(12);
+      ASSERT_EQ(host("A"), "");
+      platform::servo_ticks(4);
+      double last = place();
+      platform::servo_ticks(1);
+      double velocity = (place() - last) / kTickMs;
+      ASSERT_EQ(host(jog), "");
+      ASSERT_EQ(host("A"), "");
+      for (int tick = 1; tick < 300; ++tick) {
+        last = place();
+        platform::servo_ticks(1);
+        const double now = (place() - last) / kTickMs;
+        ASSERT_LE(std::abs(now - velocity), 2.5 * kTickMs) << tick;
+        velocity = now;
+      }
+    }
+}
+
 // motion:5.1/1: its last step, too; a RAPID move made that at Isx94, which may be long.
 TEST_F(RampsAndTime, ARapidMoveIsBackAtItsSpeedWithTheHoldsEnd) {
   begin("RAPID X100");
