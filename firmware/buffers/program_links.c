@@ -10,7 +10,7 @@ uint32_t program_links_line(struct program_structure* structure, const struct fi
   const uint32_t at = structure->offset, count = fixed_program_line(program, at);
   const uint32_t taken = count < LONGEST_LINE ? count : LONGEST_LINE;
   for (uint32_t i = 0; i < taken; i++, slice_pause()) words[i] = fixed_program_word(program, at + i);
-  if (fixed_programs_generation() != generation) return 0;
+  if (fixed_programs_generation() != generation || count == 0) return 0;
   *error = program_structure_line(structure, program->kind == FIXED_PROG, words, taken);
   structure->offset = at + count;
   return count;

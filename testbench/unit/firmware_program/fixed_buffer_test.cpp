@@ -341,6 +341,15 @@ TEST_F(FixedBuffer, AProgramThatIsAddedToKeepsItsStructure) {
 
 // firmware:4.3/4: what CLOSE has appended OPEN takes away, a RETURN of the lines it does not: subroutines are added
 // file by file.
+// As if it had never been closed.
+TEST_F(FixedBuffer, AReopenedProgramGoesOnBehindAOneLineIf) {
+  ASSERT_EQ(host("OPEN PROG 1 P1=1"), "");
+  ASSERT_EQ(host("IF(P9=1) P2=2"), "");
+  ASSERT_EQ(host("CLOSE OPEN PROG 1"), "");
+  EXPECT_EQ(host("ELSE P3=3"), "");
+  EXPECT_EQ(host("LIST"), "P1=1|IF(P9=1)P2=2|ELSE P3=3");
+}
+
 TEST_F(FixedBuffer, CloseAppendsAReturnThatOpenTakesAway) {
   for (const std::string name : {"PROG 1", "PLC 1", "FORWARD", "INVERSE"}) {
     ASSERT_EQ(host("OPEN " + name + " P1=1 CLOSE"), "");
