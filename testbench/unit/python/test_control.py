@@ -190,6 +190,7 @@ def test_a_line_that_was_cut_off_is_dropped_and_nothing_is_typed(opened):
     with control() as client:
         client.call("command", line=opened)
         line = "P1=" + "+".join(["1"] * 120)
+        client.call("command", line=line)  # else there may be no program: a busy machine cuts all of the others
         cut = []
         while cut.count(4) < 3 and len(cut) < 1000:  # the wall is looked at now and then, and a line may end before
             limit = len(cut) % 20 * 1e-4
@@ -199,7 +200,7 @@ def test_a_line_that_was_cut_off_is_dropped_and_nothing_is_typed(opened):
         name = opened.replace("OPEN", "LIST").replace(" CLEAR", "")
         listed = client.call("command", line=name)["result"]["lines"]
         whole = [one for one in listed if one.strip() not in ("RET", "RETURN", "")]
-        assert set(whole) <= {line}, listed
+        assert set(whole) == {line}, listed
         assert client.call("texts")["result"]["texts"] == []
         assert client.call("command", line="I3 I4 I6")["result"]["lines"] == ["2", "0", "1"]
 
