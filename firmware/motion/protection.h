@@ -19,16 +19,17 @@ extern const struct protection_hooks protection_hooks;
 void protection_initialize(void);
 void protection_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
 void protection_pass(void);                    /* real-time task: all motors */
-void protection_kill(
-    uint32_t motor); /* 0..31, by a variable of it: the program of its system ends with the next pass */
-/* 0..31, servo task held off: whether the motor stands in a limit of that side, as it is now. Software limits count for
+bool protection_is_asked_for(void);            /* real-time task: the servo task has seen what does not wait */
+void protection_stand(bool still);             /* background: nothing is looked at (SAVE) */
+/* Motor 0..31, killed by a variable of it: the program of its system ends with the next pass. */
+void protection_kill(uint32_t motor);
+/* Motor 0..31, servo task held off: whether it stands in a limit of that side, as it is now. Software limits count for
  * no search for home. */
 bool protection_is_in_limit(uint32_t motor, bool up, bool homes);
-void protection_refuse(
-    uint32_t motor);                /* the same: a program asks for more of it. That is aborted with the next pass */
-bool protection_is_asked_for(void); /* real-time task: the servo task has seen what does not wait */
-void protection_stand(bool still);  /* background: nothing is looked at (SAVE) */
-extern uint32_t protection_watched; /* S; bit n: the servo task looks at motor n in this interrupt */
+/* The same: a program asks for more of it. That is aborted with the next pass. */
+void protection_refuse(uint32_t motor);
+
+extern uint32_t protection_watched;                 /* S; bit n: the servo task looks at motor n in this interrupt */
 extern volatile uint32_t protection_always_watched; /* R; in each, as the last pass has left it */
 enum { PROTECTION_TURNS = 4 };                      /* servo interrupts in which all motors are looked at */
 static inline bool protection_takes_turns(void) { return i_integer(I8_REAL_TIME_PERIOD) >= PROTECTION_TURNS; }

@@ -196,7 +196,6 @@ TEST_F(Protection, ProgramsOfKilledMotorsAreAborted) {
   }
 }
 
-// motion:6.5, rule 2: with I13 = 1 at each servo interrupt, without passes.
 // So does one of a motor that is no longer activated, or has no phase reference any more; another's jog goes on.
 TEST_F(Protection, ProgramsOfMotorsThatAVariableKillsEnd) {
   for (const char* variable : {"I200=0", "I201=1"}) {
@@ -221,6 +220,7 @@ TEST_F(Protection, ProgramsOfMotorsThatAVariableKillsEnd) {
   EXPECT_FALSE(status1(1, 13));
 }
 
+// motion:6.5, rule 2: with I13 = 1 at each servo interrupt, without passes.
 TEST_F(Protection, ForegroundInPosition) {
   c_.line("I128=160 I188=255");
   ASSERT_TRUE(motor_close(0));
