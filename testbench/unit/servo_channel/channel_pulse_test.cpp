@@ -271,6 +271,42 @@ TEST_F(ChannelPulseTest, RateIsThatOfAll24BitsOfTheCommandUpToAQuarterOfItsClock
   }
 }
 
+// 3FFFFF and three steps of 400000 make FFFFFF, so the fourth overflows; with steps of 400001 the third would, with one
+// the other way the first. Downwards -1 underflows first and leaves FFFFFF, of which the same steps leave 0.
+TEST_F(ChannelPulseTest, ALargerCommandIsAQuarterOnItsWayToTheLastStep) {
+  int rises = 0;
+  const auto run = [&](int command, Tick periods) {  // so many additions of it
+    const Tick end = rig_.now() + periods * kPfmClk;
+    bool last = pulse();
+    out_c(command);
+    for (;; rig_.tick()) {
+      rises += pulse() && !last;
+      last = pulse();
+      if (rig_.now() == end) break;
+    }
+  };
+  for (const int sign : {1, -1})
+    for (const int command : {0x400000, 0x400001, 0x500000, 0x7FFFFF}) {
+      SCOPED_TRACE(::testing::Message() << sign << " times " << command);
+      rig_.reset();
+      rig_.write(ic_words::kPwmControl, pwm_control(kMaxCount, 1));
+      control(1, kPfm);
+      run(0, 4);
+      if (sign < 0) run(-1, 1);
+      run(0, 4);
+      ASSERT_EQ(rises, sign < 0);
+      run(sign * 0x3FFFFF, 1);
+      run(sign * command, 3);
+      run(0, 4);
+      EXPECT_EQ(rises, sign < 0);
+      run(sign * command, 1);
+      run(0, 4);
+      EXPECT_EQ(rises, sign < 0 ? 2 : 1);
+      EXPECT_EQ(rig_.other(kDir, 1), sign < 0);
+      rises = 0;
+    }
+}
+
 // Bits 7..0 of a PWM command do nothing, and commands are signed.
 TEST_F(ChannelPulseTest, LowByteOfAPwmCommandDoesNothing) {
   rig_.write(ic_words::kPwmControl, pwm_control(kMaxCount, 0));

@@ -1,5 +1,5 @@
 // The lines of the serial streams at every tick: with which edge of the clock a bit changes, and what a reset leaves of
-// a stream (servo-ic:5.13/1, servo-ic:5.13/2, servo-ic:5.13/8).
+// a stream, what a new divider does to a bit (servo-ic:5/2, servo-ic:5.13/1, servo-ic:5.13/2, servo-ic:5.13/8).
 #include "testbench/unit/servo_channel/channel_fixture.h"
 
 namespace brick {
@@ -63,6 +63,33 @@ TEST_F(ChannelSerialLineTest, EachBitBeginsWithAFallOfItsClock) {
     EXPECT_GE(begun[2], 15) << "n " << n;
     EXPECT_GE(begun[3], 21) << "n " << n;
   }
+}
+
+// Written just behind the fall that begins a bit: the rise in its middle and the fall at its end come as before, the
+// next bit has the new length (servo-ic:5/2).
+TEST_F(ChannelSerialLineTest, ANewNumberMovesNoEdgeOfTheBitUnderWay) {
+  for (const unsigned clock : {kDacClk, kAdcClk})
+    for (const unsigned before : {3u, 4u, 5u})
+      for (const unsigned after : {1u, 2u, 6u, 7u}) {
+        SCOPED_TRACE(::testing::Message() << "clock " << clock << ", " << before << " to " << after);
+        const auto high = [&] { return (serial() & clock) != 0; };
+        divide(before);
+        rig_.ticks(kTicksPerRef << 7);
+        phase_rises();
+        wait_until(high);
+        wait_until([&] { return !high(); });
+        const Tick fall = rig_.now(), old = kTicksPerRef << before, fresh = kTicksPerRef << after;
+        divide(after);
+        wait_until(high);
+        EXPECT_EQ(rig_.now() - fall, old / 2);
+        wait_until([&] { return !high(); });
+        EXPECT_EQ(rig_.now() - fall, old);
+        wait_until(high);
+        EXPECT_EQ(rig_.now() - fall, old + fresh / 2);
+        wait_until([&] { return !high(); });
+        EXPECT_EQ(rig_.now() - fall, old + fresh);
+        rig_.ticks(25 * (kTicksPerRef << 7));  // to the end of the stream
+      }
 }
 
 // A reset before the first bit of a stream, in the middle of one, or between a trip and its zeros: all four lines are
