@@ -155,7 +155,7 @@ def mutants(file, name, options, first):
     for _ in range(ROUNDS):
         text = schemata.write(finder.source, found, schemata.C(file))
         finder.unit.reparse([(str(file), text.decode())])
-        wrong = {culprit(text, error.location.offset) for error in finder.errors()}
+        wrong = {culprit(text, error) for error in finder.errors()}
         if not wrong:
             places = [m.place for m in found]
             return mutants_of(name, finder.source, places, first)
@@ -163,8 +163,13 @@ def mutants(file, name, options, first):
     raise ValueError(f"{name}: Clang does not read it with mutants: {finder.errors()[0]}")
 
 
-def culprit(text, offset):
-    """The mutant at which Clang stumbles: the one that begins here, or the last before."""
+def culprit(text, error):
+    """The mutant at which Clang stumbles: the one that begins here, else the last in what it underlines (operands, an
+    initial value), else the last before."""
+    offset = error.location.offset
     begun = re.match(rb"\(*brick_mutant\((\d+)\)", text[offset:])
-    marks = [begun] if begun else list(MARK.finditer(text, 0, offset + 1)) or list(MARK.finditer(text))
+    if begun:
+        return int(begun.group(1))
+    underlined = [mark for span in error.ranges for mark in MARK.finditer(text, span.start.offset, span.end.offset)]
+    marks = underlined or list(MARK.finditer(text, 0, offset + 1)) or list(MARK.finditer(text))
     return int(marks[-1].group(1))

@@ -115,6 +115,7 @@ class Places(unittest.TestCase):
 
 
 CPP = """#pragma once
+#include <string>
 struct Field { unsigned get(unsigned w) const { return w; } bool operator<(const Field&) const { return true; } };
 constexpr unsigned kTop = 9, kShort = kTop - 1;
 constexpr Field kField{};
@@ -140,6 +141,10 @@ class Counter {
         count_ = twice(count_);
     }
     return kField.get(count_);
+  }
+  std::string name(const std::string& host) {
+    constexpr unsigned kOne = 1, kTwo = 2;
+    return '[' + host + ']' + std::to_string(kOne + count_);
   }
 
  private:
@@ -174,6 +179,11 @@ class PlacesOfCpp(unittest.TestCase):
         self.assertEqual(self.found("constexpr"), [])
         self.assertEqual(self.found("return kField < kField"), [])  # it has no `<=`
         self.assertEqual(self.found("const unsigned size"), [])  # of an array
+
+    def test_what_clang_underlines_goes_and_nothing_before_it(self):
+        self.assertEqual(self.found("constexpr unsigned kOne"), [])
+        self.assertEqual(self.found("return '['"), ["kOne => (kOne + 1)", "kOne + count_ => kOne - count_"])
+        self.assertIn("0 => 1", self.found("if (!field) return table[0];"))
 
     def test_text_with_all_of_them_is_cpp(self):
         text = schemata.write(CPP.encode(), self.mutants, schemata.C(self.file))
