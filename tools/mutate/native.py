@@ -22,7 +22,7 @@ from common import ROOT, hash_of
 from mutant import Place, mutants_of, sources_of
 from runner import ALIVE, EQUAL, Tests, Verdict
 
-ZERO_LIMIT, COMPILE_LIMIT = 300, 120  # s
+ZERO_LIMIT, COMPILE_LIMIT = 300, 600  # s
 QUICK = 100  # ms; tests that take longer come after all that do not
 NAMES = 300  # of tests in one call
 TOOLS = ROOT / "tools/mutate"
@@ -239,7 +239,7 @@ class Judge:
         words = [w for w in plain(command, path, "alone.o") if not w.startswith(("-fsanitize", "-O", "-g"))]
         words = [f"-I{(self.tree / w[2:]).resolve()}" if w.startswith("-I") else w for w in words]
         compiler = next(i for i, w in enumerate(words) if w.endswith(("++", "cc", "gcc")) and not w.endswith("ccache"))
-        words[compiler + 1:compiler + 1] = ["-I."]
+        words[compiler + 1:compiler + 1] = ["-I.", "-include", str(schemata.CHOSEN)]  # brick_without()
         status, said, seconds = runner.ended([*words, *OPTIMIZED], folder, COMPILE_LIMIT)
         if status != 0:
             raise overlay.NoBuild(f"{shlex.join(words)}\nstatus {status}\n{said[-2000:]}")

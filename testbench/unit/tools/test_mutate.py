@@ -29,6 +29,7 @@ import cpp_source  # noqa: E402
 import equal  # noqa: E402
 import judges  # noqa: E402
 import mutant  # noqa: E402
+import native  # noqa: E402
 import plan  # noqa: E402
 import planted  # noqa: E402
 import proofs  # noqa: E402
@@ -191,6 +192,36 @@ class PlacesOfCpp(unittest.TestCase):
             one = pathlib.Path(folder) / "all.cpp"
             one.write_bytes(text)
             subprocess.run(["c++", "-std=c++17", "-fsyntax-only", "-w", str(one)], check=True)
+
+
+class Alone(unittest.TestCase):
+    TEXT = b"""int of(int n) {
+  switch (n) {
+    case 1: return 7;
+    case 2: return 7;
+    default: return 0;
+  }
+}
+int same(int n) {
+  switch (n) {
+    case 1: return 5;
+    default: return 5;
+  }
+}
+"""
+
+    def test_a_case_is_equal_where_it_makes_the_same_code(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            file = root / "a.cpp"
+            file.write_bytes(self.TEXT)
+            judge = native.Judge.__new__(native.Judge)
+            judge.root = judge.tree = root
+            judge.out, judge.objects, judge.sources = root / "out", {}, {"a.cpp": self.TEXT}
+            judge.commands = {"a.cpp": [["c++", "-c", str(file), "-o", "a.o"]]}
+            cases = [m for m in cpp_source.mutants(file, "a.cpp", ["-std=c++17"], 1) if m.place.operator == "case"]
+            self.assertEqual([(m.line, judge.by_filter(m).status) for m in cases],
+                             [(2, runner.ALIVE), (2, runner.ALIVE), (9, runner.EQUAL)])
 
 
 class Texts(unittest.TestCase):
