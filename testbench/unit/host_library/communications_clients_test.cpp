@@ -41,6 +41,18 @@ TEST_F(CommunicationsProcessorTest, OthersMemoryAndQueriesDoNotWaitForALine) {
   EXPECT_EQ(take(), (Replies{{1, "slow\r\x06"}}));
 }
 
+TEST_F(CommunicationsProcessorTest, OneThatWaitsIsNotOvertakenByWhoComesLater) {
+  fake().thinking = 20 * kMs;
+  request(1, packet(Packet::kSendLine, "=a"));
+  run(5 * kMs);
+  ASSERT_EQ(take(), (Replies{{1, "@"}}));
+  request(2, packet(Packet::kGetResponse, "=b"));
+  run(5 * kMs);
+  request(3, packet(Packet::kGetResponse, "=c"));
+  run(100 * kMs);
+  EXPECT_EQ(lines_, (Lines{"=a", "=b", "=c"}));
+}
+
 // Memory takes time of the bus: 16 requests of 64 clients take longer than an answer may pause.
 TEST_F(CommunicationsProcessorTest, RequestsForMemoryWithoutAnEndDoNotStarveLines) {
   const auto ask_for_memory = [&](unsigned client) {
@@ -111,6 +123,29 @@ TEST_F(CommunicationsProcessorTest, FlushWaitsForTheEcho) {
     EXPECT_GE(bus_.now() - from, wait * kMs);
     EXPECT_LE(bus_.now() - from, (wait + 2) * kMs);
   }
+}
+
+// Another client has talked last.
+TEST_F(CommunicationsProcessorTest, FlushOfAnotherClientWaitsAsWell) {
+  EXPECT_EQ(response("I63=0"), "I63=0\r\x06") << "no echo from now on";
+  request(2, packet(Packet::kFlush, "", 50));
+  run(49 * kMs);
+  EXPECT_EQ(take(), Replies{});
+  run(3 * kMs);
+  EXPECT_EQ(take(), (Replies{{2, "@"}}));
+}
+
+// ^X as a control character is a flush whose answer is that of any other character.
+TEST_F(CommunicationsProcessorTest, ClearingByItsCharacterWaitsForTheEcho) {
+  const auto clear = [this] { return ask(packet(Packet::kControlResponse, "", 0x18, 0, 0xC0)); };
+  Tick begin = bus_.now();
+  EXPECT_EQ(clear(), "\x06");
+  EXPECT_LE(bus_.now() - begin, 2 * kMs);
+  EXPECT_EQ(response("I63=0"), "I63=0\r\x06") << "no echo from now on";
+  begin = bus_.now();
+  EXPECT_EQ(clear(), "\x06");
+  EXPECT_GE(bus_.now() - begin, 10 * kMs);
+  EXPECT_LE(bus_.now() - begin, 12 * kMs);
 }
 
 // ethernet:6/2

@@ -80,6 +80,12 @@ class CommunicationsProcessorTest : public ::testing::Test {
   Bytes fetch() { return ask(packet(Packet::kGetBuffer, "", 0, 0, 0xC0)); }
   Bytes ready() { return ask(packet(Packet::kReadReady, "", 0, 0, 0xC0, 2)); }
 
+  static int memory_writes() {  // cycles of the bus since `changes` was cleared
+    int writes = 0;
+    for (const auto& change : fake().changes) writes += !change.after.isa_memw_n && change.before.isa_memw_n ? 1 : 0;
+    return writes;
+  }
+
   inline static const Bytes kNul{std::string(1, '\0')};
 
   Machine machine_{sc_core::sc_gen_unique_name("machine"), MachineConfig{}};

@@ -65,6 +65,16 @@ TEST(ControllerAnswer, EndsWithItsAcknowledgeWithoutAWait) {
   EXPECT_FALSE(heard("\n", "J/", false).ended_by_itself) << "I3=1: data may follow";
 }
 
+// "A" and CR sum up to "N": two may be text, three are no chance.
+TEST(ControllerAnswer, ThreeRightChecksumsAreBelieved) {
+  ControllerAnswer answer(command_checksum("P1..3"), false);
+  ASSERT_EQ(checksum("A\r"), 'N');
+  for (const Bytes& expected : {"", "", "A\rA\rA\r"}) {
+    for (const char c : Bytes("A\rN")) answer.take(static_cast<std::uint8_t>(c));
+    EXPECT_EQ(answer.release(), expected);
+  }
+}
+
 // A value whose characters and CR sum up to ACK: 0x06 behind its CR is a checksum or the end.
 TEST(ControllerAnswer, AChecksumThatLooksLikeAnAcknowledge) {
   const Bytes value = "ZZ6";  // 5A + 5A + 36 + 0D = F7; + 0F
