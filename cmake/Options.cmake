@@ -33,10 +33,10 @@ endif()
 # What does little while a simulation runs, and costs the compiler much: pages, commands, files of boards, benches.
 set(BRICK_SHORT_OPT $<$<CONFIG:Release>:-O1>)
 set(BRICK_RTL_ARGS "")  # verilate(... VERILATOR_ARGS ... ${BRICK_RTL_ARGS})
-set(BRICK_RTL_BITS "")  # of small modules: brick_add_rtl_module(... ARGS ${BRICK_RTL_BITS})
+set(BRICK_RTL_BITS "")  # of chips and modules: brick_add_rtl_module(... ARGS ${BRICK_RTL_BITS})
 if(BRICK_COVERAGE)
   set(BRICK_RTL_ARGS --coverage-line)
-  set(BRICK_RTL_BITS --coverage-toggle)  # makes the code of a servo IC ten times as long: 16 MB, so not of one
+  set(BRICK_RTL_BITS --coverage-toggle)
 endif()
 
 # Flags of the sanitizers, for the whole tree (preset asan) and for the few native libraries that every build tests with
