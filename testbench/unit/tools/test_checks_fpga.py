@@ -241,6 +241,34 @@ class Pulls(unittest.TestCase):
         self.assertNotEqual(pulls(lpf.replace(line, line.replace("UP", "DOWN"))), FOUR_CHANNELS)
 
 
+def pulled_up(lpf):
+    return set(re.findall(r'^IOBUF PORT "(?!motor_i|phase_io|servo_io)([^"]+)" IO_TYPE=LVCMOS33 PULLMODE=UP;$', lpf,
+                          re.MULTILINE))
+
+
+def idle_high():
+    """Pads whose rows say 1 for what nobody drives. A supply that nobody reports is not good; SSI has no pads."""
+    pads = set()
+    for row in (TOOLS.parent / "rtl/pins/board.pins").read_text().splitlines():
+        cells = [cell.strip() for cell in row.split("|")]
+        if len(cells) > 5 and cells[3] in ("PortAPins", "IsaLines", "ConnectorPins") and int(cells[5] or "0", 0):
+            name, width = f"{cells[0]}i" if cells[0].endswith("_n") else f"{cells[0]}_i", int(cells[2])
+            pads |= {name} if width == 1 else {f"{name}[{bit}]" for bit in range(width)}
+    return {name for name in pads if not name.startswith(("pwr_good", "ssi_data"))}
+
+
+class Idle(unittest.TestCase):
+    def test_what_nobody_drives_is_at_its_rows_level(self):
+        self.assertIn("jpan_i[15]", idle_high())
+        for top in ("brick_ecp5", "board_chip_ecp5"):
+            with self.subTest(top):
+                self.assertEqual(pulled_up((TOOLS.parent / "fpga" / f"{top}.lpf").read_text()), idle_high())
+
+    def test_a_servo_ic_without_its_trip_is_off(self):
+        lpf = (TOOLS.parent / "fpga/servo_ic_chip_ecp5.lpf").read_text()
+        self.assertEqual(pulled_up(lpf), {"pa_rd_ni", "pa_wr_ni", "trip_i"})
+
+
 @unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
 class Resets(unittest.TestCase):
     def test_flip_flops_share_one_inverter(self):
