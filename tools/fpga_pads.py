@@ -1,8 +1,8 @@
 """Delays between pads and flip-flops in a placed design, from the SDF file that nextpnr writes; docs/fpga.md.
 
 nextpnr judges what runs from clock to clock. Here is the rest: pad to flip-flop, flip-flop to pad, pad to pad without a
-clock, /RD to the end of D and to what enables it, flip-flop to the resets of others; and what that means for the rows
-of the data sheet of Port A and ISA.
+clock, /RD to the end of D and to what enables it, the flip-flop that releases the reset to all that it resets; and what
+that means for the rows of the data sheet of Port A and ISA.
 """
 
 import collections
@@ -26,6 +26,7 @@ SLOW_I52, RAM_I52 = 21, 13
 RD_HIGH = 2.75 * 1000 / (CPU * (SLOW_I52 + 1)) - 4.0
 RD_HIGH_RAM = 1.75 * 1000 / (CPU * (RAM_I52 + 1)) - 4.0
 RAM, STROBES = "u_dpram.", "u_bus_strobes."  # cells
+RELEASE = r"\bu_(reset_sync\.u_pwm|reset)\.sync2_q"  # lets go of the reset, in reset_sync and in a servo IC's chip
 # Which pads must keep a time, and the rows of host-bus they are for: to a flip-flop, or from one.
 PORT_A_IN, ISA_IN = r"pa_.*_n?io?", r"isa_(?!sd_io|resetdrv).*_n?i"
 D, TA, MEMCS16, CLOCKS = r"pa_d(ata)?_io", r"pa_ta_n_?o", r"isa_memcs16_n_?io", r"(phase|servo)_io"
@@ -116,7 +117,8 @@ def delays(graph):
     RAM to either. What a strobe clocks follows no clock and counts nowhere. Of D alone, for each of its pads, from /RD
     to what turns it on: "off" by way of a flip-flop that /RD clears, "off_ram" by one of the RAM, "end" by a gate where
     the pad has one, which ends D whatever the flip-flops do, else by these. The file has no time from a reset to Q:
-    that from the clock stands for it.
+    that from the clock stands for it. What synthesis clears with the clock has the same input as the reset, LSR, and
+    the time of its clock, which nextpnr judges: of the reset only ways from the flip-flop that releases it count.
     """
     nodes = set(graph.after) | set(graph.before)
     flip_flops = {node: delay for node, delay in graph.setup.items() if node[1] != "LSR"}
@@ -130,7 +132,8 @@ def delays(graph):
                for cell, port in clears if read((cell, port)) is not None}
     off = longest(graph.before, {node: delay for node, delay in cleared.items() if RAM not in node[0]})
     off_ram = longest(graph.before, {node: delay for node, delay in cleared.items() if RAM in node[0]})
-    inwards, resets = longest(graph.after, flip_flops), longest(graph.before, graph.launch)
+    release = {node: delay for node, delay in graph.launch.items() if re.search(RELEASE, node[0])}
+    inwards, resets = longest(graph.after, flip_flops), longest(graph.before, release)
     to_level = {"out": longest(graph.before, others), "ram": longest(graph.before, ram),
                 "through": longest(graph.before, pads_in)}
     to_enable = {"enable": to_level["out"], "ram": to_level["ram"], "through": to_level["through"]}
@@ -145,7 +148,7 @@ def delays(graph):
         if node[1] == "T" and re.fullmatch(D, pad(node[0])):
             for kind, delay in ends(read(node), off(node), off_ram(node) if ram else 0.0).items():
                 keep(row, kind, delay)
-    reset = [resets(node) + graph.setup[node] for node in clears if resets(node)]
+    reset = [resets(node) + graph.setup[node] for node in clears if resets(node) is not None]
     return dict(found), max(reset, default=None)
 
 
@@ -240,7 +243,9 @@ def page(placed):
         longest_ways = (max((ways[kind] for kind in kinds if kind in ways), default=None) for kinds in columns)
         cells = ("" if way is None else f"{way:.2f}" for way in longest_ways)
         yield f"| `{name}` | {' | '.join(cells)} |"
-    if reset is not None:
+    if reset is None:
+        yield from ("", "The reset is released by no flip-flop that is known **missed**.")
+    else:
         missed = "" if reset <= TICK else " **missed**"
         yield from ("", f"The reset reaches the last flip-flop {reset:.2f} ns after its clock, of {TICK:.2f}{missed}.")
 

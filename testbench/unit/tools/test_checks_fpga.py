@@ -48,14 +48,16 @@ class Judged(unittest.TestCase):
         self.assertEqual(problems, ["seed 3: clk_ref to clk_ref at 46.5 MHz, expected 47 or more"])
 
 
-# D in to a flip-flop by a LUT, the flip-flop to /TA, /RD to /TA without a clock, the reset.
+# D in to a flip-flop by a LUT, the flip-flop to /TA, /RD to /TA without a clock, the reset, and what is cleared with a
+# clock, by the same input of a flip-flop.
 SDF = r"""
 (CELL (CELLTYPE "top")
   (INTERCONNECT pa_d_io\[3\]\$tr_io/O lut/A (100:200:1000) (100:200:1000))
   (INTERCONNECT lut/F ff/M (100:200:2000) (100:200:2000))
   (INTERCONNECT ff/Q pa_ta_no\$tr_io/I (100:200:3000) (100:200:3000))
   (INTERCONNECT pa_rd_ni\$tr_io/O pa_ta_no\$tr_io/T (100:200:700) (100:200:700))
-  (INTERCONNECT ff/Q far/LSR (100:200:4000) (100:200:4000))
+  (INTERCONNECT u_core.u_reset_sync.u_pwm.sync2_q_TRELLIS_FF_Q/Q far/LSR (100:200:4000) (100:200:4000))
+  (INTERCONNECT ff/Q far/LSR (100:200:9000) (100:200:9000))
 )
 (CELL
   (CELLTYPE "TRELLIS_COMB")
@@ -67,6 +69,11 @@ SDF = r"""
   (INSTANCE ff)
   (IOPATH CLK Q (300:350:400) (300:350:400))
   (SETUPHOLD (posedge M) (posedge CLK) (0:0:50) (1:1:1))
+)
+(CELL
+  (CELLTYPE "TRELLIS_FF")
+  (INSTANCE u_core.u_reset_sync.u_pwm.sync2_q_TRELLIS_FF_Q)
+  (IOPATH CLK Q (300:350:400) (300:350:400))
 )
 (CELL
   (CELLTYPE "TRELLIS_FF")
@@ -180,6 +187,13 @@ class Pads(unittest.TestCase):
             self.assertLess(row_of(found, ENDS).has, 8.0)
             self.assertEqual(row_of(of_data((0,), cleared), ENDS).has, math.inf)
             self.assertIn("| inf |", "".join(fpga_pads.page([(found, None)])))
+
+    def test_the_flip_flop_that_releases_the_reset_is_known_in_each_chip(self):
+        for cell in ("u_board.u_core.u_reset_sync.u_pwm.sync2_q", "u_chip.u_reset.sync2_q"):
+            sdf = SDF.replace("u_core.u_reset_sync.u_pwm.sync2_q", cell)
+            self.assertAlmostEqual(fpga_pads.delays(fpga_pads.read(sdf.splitlines()))[1], 0.4 + 4.0 + 0.287)
+        nobody = fpga_pads.delays(fpga_pads.read(SDF.replace("u_reset_sync", "u_other").splitlines()))
+        self.assertIn("**missed**", list(fpga_pads.page([nobody]))[-1])
 
     def test_of_several_placements_each_line_is_that_of_the_worst(self):
         late = {"pa_ta_no": {"out": 6.2}, "pa_a_i": {"in": 2.0}}
