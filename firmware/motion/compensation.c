@@ -105,8 +105,13 @@ static int32_t entry(const struct table* t, uint32_t number) {
   return hal_signed(*hal_y(t->before + (number == 0u ? t->count : number)));
 }
 
-static int64_t value_of(const struct table* t) {
-  const int64_t position = t->of_desired ? motors[t->source].commanded : motors[t->source].actual;
+/* A commanded position is the one before its own corrections. */
+static int64_t position_of(const struct table* t) {
+  const struct motor* m = &motors[t->source];
+  return t->of_desired ? m->trajectory + m->master - m->held_back : m->actual;
+}
+
+static int64_t value_at(const struct table* t, int64_t position) {
   const uint64_t turn = (2u * (uint64_t)position + 1u) * t->half_turns, place = (turn >> 32) * t->count;
   const uint32_t number = (uint32_t)(place >> 32), fraction = (uint32_t)place;
   const int64_t from = (int64_t)entry(t, number) * t->unit, to = (int64_t)entry(t, number + 1u) * t->unit;
@@ -117,8 +122,28 @@ static int64_t sum(enum region_kind kind, uint32_t motor) {
   int64_t all = 0;
   const struct table* tables = present->tables[kind];
   for (uint32_t i = present->first[kind][motor], left = MOTORS; i != NONE && left != 0u; i = tables[i].next, --left)
-    all += value_of(&tables[i]);
+    all += value_at(&tables[i], position_of(&tables[i]));
   return all;
+}
+
+/* Of COMP tables, its own as if it were commanded to be at `place` and had gone there with `corrected`. */
+static int64_t sum_there(uint32_t motor, int64_t place, int64_t corrected) {
+  int64_t all = 0;
+  const struct table* tables = present->tables[REGION_COMP];
+  for (uint32_t i = present->first[REGION_COMP][motor], left = MOTORS; i != NONE && left != 0u; --left) {
+    const struct table* t = &tables[i];
+    all += value_at(t, t->source != motor ? position_of(t) : t->of_desired ? place : place + corrected);
+    i = t->next;
+  }
+  return all;
+}
+
+/* The second look is for tables by the actual position, which has the correction in it. */
+int64_t compensation_anew(uint32_t motor, int64_t place) {
+  if ((compensation_of_position >> motor & 1u) == 0u) return 0;
+  const int64_t before = given[motor];
+  given[motor] = sum_there(motor, place, sum_there(motor, place, 0));
+  return given[motor] - before;
 }
 
 int64_t compensation_position(uint32_t motor) {

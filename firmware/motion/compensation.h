@@ -15,5 +15,8 @@ extern uint32_t compensation_of_position, compensation_of_torque;
 int64_t compensation_position(uint32_t motor);               /* position: sum of its COMP tables */
 int64_t compensation_backlash(uint32_t motor);               /* position: of its BLCOMP tables */
 int64_t compensation_torque(uint32_t motor, int64_t output); /* to be added to `output` */
+/* Servo task held off, or in it: positions are counted from elsewhere, trajectory and master are at `place` then. How
+ * much more its COMP tables add there than they have added so far. */
+int64_t compensation_anew(uint32_t motor, int64_t place);
 
 #endif

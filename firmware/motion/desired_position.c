@@ -100,14 +100,17 @@ void desired_position_take_actual(uint32_t motor) {
   p->turning = shown;
 }
 
-void desired_position_shift(uint32_t motor, int64_t by) {
+void desired_position_shift(uint32_t motor, int64_t by, int64_t place) {
   struct motor* m = &motors[motor];
+  const int64_t corrected = m->loop == LOOP_CLOSED ? compensation_anew(motor, place) : 0, all = by + corrected;
   m->trajectory += by;
-  m->commanded += by;
-  m->closed_at += by;
-  m->actual += by;
+  m->compensation -= corrected;
+  m->commanded += all;
+  m->closed_at += all;
+  m->actual += all;
   paths[motor].turning += by;
-  average_velocity_shift(motor, by);
+  average_velocity_shift(motor, all);
+  if (m->loop != LOOP_CLOSED && (compensation_of_position >> motor & 1u) != 0u) desired_position_take_actual(motor);
 }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */

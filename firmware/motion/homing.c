@@ -16,7 +16,7 @@ bool homing_begin(uint32_t motor, uint32_t together) {
 void homing_here(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
   const struct motor* m = &motors[motor];
-  jog_count_from(motor, m->loop == LOOP_CLOSED ? m->trajectory + motor_followed(motor) : m->actual);
+  jog_count_from(motor, m->loop == LOOP_CLOSED ? m->trajectory + motor_followed(motor) : m->actual, 0);
   motors[motor].status.home_complete = true;
   hal_unmask(state);
 }

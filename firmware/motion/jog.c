@@ -252,9 +252,9 @@ void jog_make_whole(uint32_t motor) {
   hal_unmask(state);
 }
 
-void jog_count_from(uint32_t motor, int64_t position) {
+void jog_count_from(uint32_t motor, int64_t position, int64_t place) {
   struct jog* j = &jogs[motor];
-  desired_position_shift(motor, -position);
+  desired_position_shift(motor, -position, place - motor_followed(motor) + motors[motor].master);
   position_loop_show(motor); /* who asks behind `HMZ` is told 0 */
   for (uint32_t path = 0; path < 2u; path++) j->paths[path].shift -= position;
   j->request.target -= position; /* a place: it stays where it is */

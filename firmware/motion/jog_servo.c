@@ -61,7 +61,7 @@ static void found(uint32_t motor, int64_t position) {
   then.target = jog_trajectory_at(motor, position) + then.beyond;
   if (homes) {
     const int64_t followed = motor_followed(motor);
-    jog_count_from(motor, then.target + followed);
+    jog_count_from(motor, then.target + followed, -then.beyond); /* where the trigger was */
     then.target = -followed;
     j->before = 0;
     status->home_complete = true;

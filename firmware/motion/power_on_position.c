@@ -66,7 +66,7 @@ static void set_position(uint32_t motor, int64_t counts) {
   const bool absolute = variable(motor, IXX10_POWER_ON_ADDRESS) != 0u;
   const int64_t position = absolute ? motor_position_of(motor, (double)counts - offset) : 0;
   const uint32_t state = hal_mask_servo();
-  jog_count_from(motor, motors[motor].actual - position);
+  jog_count_from(motor, motors[motor].actual - position, position);
   motors[motor].bias = 0;
   motors[motor].status.home_complete = absolute;
   hal_unmask(state);

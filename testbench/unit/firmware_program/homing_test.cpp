@@ -121,6 +121,45 @@ TEST_F(Homing, ZeroIsTheCapturedCountAtAnySpeedUpTo100CountsAMs) {
   }
 }
 
+// motion:1.4/7: what tables have added while positions were counted from elsewhere is no part of home; nothing jumps.
+TEST_F(Homing, ZeroKnowsNothingOfATableThatCountedFromElsewhere) {
+  begin(0);
+  for (const std::string source : {"#1", "#1D"}) {
+    SCOPED_TRACE(source);
+    ASSERT_EQ(host("#1DEFINE COMP 4," + source + ",#1,10000"), "");
+    ASSERT_EQ(host("1600 -800 480 0"), "");  // 100, -50 and 30 counts at 2500, 5000 and 7500
+    ASSERT_EQ(host("I51=1 I123=20 I126=160"), "");
+    run(10);
+    double last = place(), largest = 0;
+    const auto to_rest = [&] {
+      for (unsigned i = 0, quiet = 0; i < 20000 && quiet < 50; ++i) {
+        tick();
+        largest = std::max(largest, std::abs(place() - last));
+        last = place();
+        quiet = jog_is_moving(0) ? 0 : quiet + 1;
+      }
+    };
+    ASSERT_EQ(host("#1J=2400"), "");
+    to_rest();
+    const double at = place() + 50.5;
+    for (const unsigned search : {1u, 2u}) {
+      trigger_at(at);
+      ASSERT_EQ(host("#1HM"), "");
+      found_ = 0;
+      to_rest();
+      ASSERT_EQ(found_, 1u);
+      EXPECT_EQ(motors[0].trajectory, 0);
+      // 10 counts behind the trigger, the correction between -10 and 0 is 30 * 10 / 2500 of it
+      EXPECT_NEAR(place(), std::floor(at) + 10 - 0.12, 0.02) << search;
+      ASSERT_EQ(host("#1J=-100"), "");
+      to_rest();
+    }
+    EXPECT_LT(largest, 20 * platform::kDefaultI10 / 8388608.0 * 1.1 + 0.1) << "at 20 counts a ms";
+    ASSERT_EQ(host("I51=0 #1DELETE COMP"), "");
+    run(10);
+  }
+}
+
 TEST_F(Homing, CapturedFractionCountsWithIxx24Bit12) {
   std::mt19937 random(brick::random_seed(8));
   std::uniform_real_distribution<> way(50, 500);

@@ -446,7 +446,7 @@ TEST_F(Jog, CountedFromElsewhereWhileItIsPlanned) {
       platform::real_time_in_slices([&] {
         if (++pauses != when) return;
         const std::uint32_t state = hal_mask_servo();
-        jog_count_from(0, units(100));
+        jog_count_from(0, units(100), 0);
         hal_unmask(state);
         last -= 100;
       });

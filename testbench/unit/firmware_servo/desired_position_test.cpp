@@ -331,8 +331,71 @@ TEST_F(DesiredPosition, TablesOfOneTargetAddUp) {
   desired(250, 1);
   motors[2].actual = 500 * kCount;
   EXPECT_NEAR(desired(0), 14, 0.005);
-  EXPECT_NEAR(desired(1000), 1014 + 14 * 2 / 1000.0, 0.005) << "that of motor 1 by where it was, 14 counts";
+  EXPECT_NEAR(desired(500), 514 + 1, 0.005) << "that of motor 1 by where it is without corrections";
   EXPECT_NEAR(desired(1000), 1014 + 2, 0.005);
+}
+
+// motion:1.4/2: with D by trajectory and master, before corrections and filter, in the same interrupt.
+TEST_F(DesiredPosition, ATableByTheDesiredPositionTakesTheOneBeforeCorrections) {
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 2,#1D,#1,2000"), "");
+  ASSERT_EQ(c_.line("1600 0"), "");  // 100 counts at 1000
+  master(0);
+  c_.line("I51=1 I105=$10F5 I107=96 I106=1");
+  close();
+  EXPECT_NEAR(desired(500), 550, 0.005);
+  master(100);
+  EXPECT_NEAR(desired(500), 660, 0.005);
+  master(0);
+  c_.line("I140=0.5");
+  EXPECT_NEAR(desired(100), (660 + 110) / 2.0, 0.005);
+}
+
+// motion:1.4/7: HMZ says where the motor is; no table sends it elsewhere for that.
+TEST_F(DesiredPosition, HmzMovesNoMotorWithATable) {
+  for (const std::string source : {"#1D", "#1"}) {
+    SCOPED_TRACE(source);
+    ASSERT_EQ(c_.line("I51=0 #1 DEFINE COMP 4," + source + ",#1,1000"), "");
+    ASSERT_EQ(c_.line("160 -80 48 0"), "");
+    c_.line("I51=1 I30=0");
+    *hal_x(0x10F0) = 0;
+    c_.servo(2);
+    ASSERT_EQ(c_.line("#1$*"), "");
+    close();
+    motors[0].trajectory = 250 * kCount;
+    std::int64_t word = 0;
+    const auto follow = [&] {  // the motor is where it is commanded to be
+      word += motors[0].commanded / 96 - motors[0].actual / 96;
+      *hal_x(0x10F0) = static_cast<std::uint32_t>(word) & HAL_WORD_MASK;
+      c_.servo(1);
+    };
+    for (int i = 0; i < 60; ++i) follow();
+    ASSERT_NEAR(static_cast<double>(motors[0].actual) / kCount, 260, 0.7) << "9.4 at 259.4, by the actual position";
+    ASSERT_EQ(c_.line("#1HMZ"), "");
+    EXPECT_NEAR(std::stod(c_.line("#1P")), 0, 1 / 16.0);
+    for (int i = 0; i < 5; ++i) {
+      follow();
+      EXPECT_LE(std::abs(motors[0].desired_step), 96) << "1/32 count";
+    }
+    EXPECT_NEAR(static_cast<double>(motors[0].commanded) / kCount, 0, 1 / 16.0) << "no correction at zero";
+    EXPECT_NEAR(std::stod(c_.line("#1P")), 0, 1 / 16.0);
+    motor_kill(0);
+    c_.line("#1 DELETE COMP");
+  }
+}
+
+// Of an open loop the actual position is 0, and its table knows that at once.
+TEST_F(DesiredPosition, HmzOfAKilledMotorWithATable) {
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1");
+  *hal_x(0x10F0) = 250 * 32;
+  c_.servo(2);
+  ASSERT_EQ(c_.line("#1P"), "240");
+  ASSERT_EQ(c_.line("#1HMZ"), "");
+  EXPECT_EQ(motors[0].compensation, 0);
+  ASSERT_EQ(c_.line("#1J="), "");
+  c_.servo(100);
+  EXPECT_EQ(motors[0].commanded, 0) << "where it was before it was jogged";
 }
 
 // Entries are of the target's counts, the span of the source's; Ixx08 of either may change.
@@ -471,7 +534,7 @@ TEST_F(DesiredPosition, BacklashKnowsNothingOfAnotherZero) {
   close();
   for (const double by : {-1000.0, 1000.0}) {
     const double there = static_cast<double>(motors[0].trajectory) / kCount;
-    desired_position_shift(0, std::llround(by * kCount));
+    desired_position_shift(0, std::llround(by * kCount), 0);
     desired_position_pass();
     EXPECT_EQ(desired(there + by), there + by);
     EXPECT_FALSE(desired_position_backlash_is_down(0));
@@ -498,7 +561,7 @@ TEST_F(DesiredPosition, ACountedPositionMovesNothing) {
     position_loop_servo(0);
   }
   const std::int32_t output = motors[0].output;
-  desired_position_shift(0, 1000 * kCount);
+  desired_position_shift(0, 1000 * kCount, 0);
   EXPECT_EQ(desired(1010), 1010);
   EXPECT_EQ(motors[0].desired_step, 0);
   position_loop_servo(0);
