@@ -159,6 +159,11 @@ void protection_kill(uint32_t motor) {
   hal_unmask(state);
 }
 
+void protection_begin(uint32_t of) {
+  gone &= ~of;
+  refused &= ~of;
+}
+
 static void end_program(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
   if (!d->assigned) return;

@@ -23,6 +23,8 @@ bool protection_is_asked_for(void);            /* real-time task: the servo task
 void protection_stand(bool still);             /* background: nothing is looked at (SAVE) */
 /* Motor 0..31, killed by a variable of it: the program of its system ends with the next pass. */
 void protection_kill(uint32_t motor);
+/* Bit n: motor n. A program of theirs begins: what is still to be done is about others. Servo task held off. */
+void protection_begin(uint32_t of);
 /* Motor 0..31, servo task held off: whether it stands in a limit of that side, as it is now. Software limits count for
  * no search for home. */
 bool protection_is_in_limit(uint32_t motor, bool up, bool homes);

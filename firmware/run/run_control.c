@@ -12,6 +12,7 @@
 #include "firmware/motion/motor.h"
 #include "firmware/motion/path.h"
 #include "firmware/motion/place.h"
+#include "firmware/motion/protection.h"
 #include "firmware/motion/segment.h"
 #include "firmware/motion/segment_ring.h"
 #include "firmware/motion/system_motors.h"
@@ -154,6 +155,7 @@ static void set_run(uint32_t cs, bool begins, bool single_step) {
     s->own_stop = s->own_stop && waits; /* behind the moves that are still to be made */
     s->ended = s->ended && waits;
     s->failure = RUN_TIME_NONE;
+    protection_begin(s->motors);
     if (!waits) s->may_join = false;
   }
   s->end_block = s->quit_at_block = false;

@@ -220,6 +220,23 @@ TEST_F(Protection, ProgramsOfMotorsThatAVariableKillsEnd) {
   EXPECT_FALSE(status1(1, 13));
 }
 
+// Not one that is begun behind it, before the next pass has looked.
+TEST_F(Protection, AProgramThatBeginsBehindAKillIsNotEndedByIt) {
+  run({"INC TM1000 TA20 TS0", "X2000 Y1000", "X2000 Y1000", "X2000 Y1000"});
+  follow(50);
+  c_.line("&1A");
+  follow(200);
+  c_.line("I200=0");
+  ASSERT_EQ(c_.line("I200=1 &1E"), "");
+  ASSERT_EQ(c_.line("&1B1R"), "");
+  follow(50);
+  EXPECT_TRUE(runs());
+  EXPECT_EQ(loop(2), LOOP_CLOSED);
+  c_.line("I200=0");
+  follow(3);
+  EXPECT_FALSE(runs()) << "that one is";
+}
+
 // motion:6.5, rule 2: with I13 = 1 at each servo interrupt, without passes.
 TEST_F(Protection, ForegroundInPosition) {
   c_.line("I128=160 I188=255");
