@@ -9,6 +9,7 @@
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
 
@@ -133,9 +134,9 @@ static void publish_master(uint32_t motor, const struct motor* m) {
   *hal_y(word) = (uint32_t)position & HAL_WORD_MASK;
 }
 
-/* How far `wanted` is beyond the error that the loop sees. */
-static int64_t held_back(const struct motor* m, const struct path* p, int64_t wanted) {
-  const int64_t error = wanted - m->actual, most = p->error_most;
+/* How far `wanted` is beyond the error that the loop would see in this interrupt. */
+static int64_t held_back(uint32_t motor, const struct path* p, int64_t wanted) {
+  const int64_t error = wanted - position_loop_measured(motor), most = p->error_most;
   if (error > most) return error - most;
   return error < -most ? error + most : 0;
 }
@@ -187,7 +188,7 @@ void desired_position_with_extras(uint32_t motor) {
   if (p->backlash_rate != 0) m->compensation -= backlash(motor, m, p);
   int64_t wanted = m->trajectory + m->master - m->compensation;
   if (p->share != 0u) wanted = filtered(m, p, wanted);
-  if (p->error_most != 0) m->held_back = held_back(m, p, wanted);
+  if (p->error_most != 0) m->held_back = held_back(motor, p, wanted);
   wanted -= m->held_back;
   if (p->follows || p->error_most != 0) publish_master(motor, m);
   m->desired_step = saturated(wanted - m->commanded);

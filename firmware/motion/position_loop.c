@@ -85,12 +85,17 @@ static void put(struct loop* l, const struct loop* next) {
   __builtin_memcpy(l, next, offsetof(struct loop, left));
 }
 
+/* Movement counts from here. */
+static void read_words(struct loop* l) {
+  l->position_reading = *l->position_source;
+  l->velocity_reading = *l->velocity_source;
+}
+
 void position_loop_begin(uint32_t motor) {
   struct loop* l = &loops[motor - 1u];
   l->position_source = source_of(motor, IXX03_FEEDBACK_ADDRESS);
   l->velocity_source = source_of(motor, IXX03_FEEDBACK_ADDRESS + 1u);
-  l->position_reading = *l->position_source;
-  l->velocity_reading = *l->velocity_source;
+  read_words(l);
 }
 
 void position_loop_motor_changed(uint32_t motor) {
@@ -137,6 +142,12 @@ static inline bool is_small(int64_t value) { return __builtin_expect(value == (i
 static int32_t saturated(int64_t value) {
   if (value > INT32_MAX) return INT32_MAX;
   return value < INT32_MIN ? INT32_MIN : (int32_t)value;
+}
+
+/* Between closures (Ixx60): what the words show now is no movement at the next one. */
+static __attribute__((noinline)) void forget_interrupt(struct loop* l) {
+  l->forgets--;
+  read_words(l);
 }
 
 /* The words of the table wrap; positions are the sums of their movement. */
@@ -292,6 +303,7 @@ void position_loop_servo(uint32_t motor) {
   FIXED_IN_REGISTER(l);
   if (l->left != 0u) {
     l->left--;
+    if (__builtin_expect(l->forgets != 0u, 0)) forget_interrupt(l);
     return;
   }
   l->left = l->extension;

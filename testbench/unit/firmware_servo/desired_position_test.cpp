@@ -225,6 +225,27 @@ TEST_F(DesiredPosition, ErrorBeyondIxx67WaitsBehindTheFilterToo) {
   EXPECT_EQ(desired(100), 80);
 }
 
+// Between closures (Ixx60) a motor that follows is no further behind than when its loop looks.
+TEST_F(DesiredPosition, ErrorBeyondIxx67IsTheOneOfTheMoment) {
+  c_.line("I167=160 I124=$802001 I160=7");
+  close();
+  int closures = 0;
+  for (int n = 1; n <= 100; ++n) {  // 2 counts an interrupt, 5 behind
+    *hal_x(0x10F0) = static_cast<std::uint32_t>((2 * n - 5) * 32) & HAL_WORD_MASK;
+    EXPECT_EQ(desired(2 * n), 2 * n);
+    const std::int64_t before = motors[0].actual;
+    position_loop_servo(0);
+    if (motors[0].actual == before) continue;
+    closures++;
+    EXPECT_EQ(motors[0].commanded - motors[0].actual, 5 * kCount);
+  }
+  EXPECT_GE(closures, 12);
+  for (int n = 0; n < 16; ++n) {
+    EXPECT_EQ(desired(300), 205) << "10 counts from where it stands";
+    position_loop_servo(0);
+  }
+}
+
 // Entries are sixteenths of a count at the end of each of four parts of 1000 counts; between them it is a line.
 TEST_F(DesiredPosition, PositionTables) {
   ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");

@@ -86,6 +86,25 @@ TEST_F(LoopWords, MovementThatIsForgotten) {
   EXPECT_EQ(motors[0].actual - before, 32 * 96);
 }
 
+// With Ixx60 too it is two interrupts, not two closures: what moves in the third counts.
+TEST_F(LoopWords, MovementThatIsForgottenBetweenClosures) {
+  c_.line("I160=7");
+  for (int first = 0; first < 8; ++first) {  // interrupts from a closure to the third
+    close(0, 0);
+    for (int n = 0; n < 5 + first; ++n) position_loop_servo(0);
+    position_loop_forget_movement(0);
+    const std::int64_t before = motors[0].actual;
+    at(1000, 1000);
+    position_loop_servo(0);
+    at(1100, 1100);
+    position_loop_servo(0);
+    EXPECT_EQ(motors[0].actual, before) << first;
+    at(1132, 1164);
+    for (int n = 0; n < 8; ++n) position_loop_servo(0);
+    EXPECT_EQ(motors[0].actual - before, 32 * 96) << first;
+  }
+}
+
 // Two halves of a word are two variables, with their signs.
 TEST_F(LoopWords, HalvesOfAWordAreVariablesOfTheirOwn) {
   c_.line("I132=11 I160=2 I133=13 I163=-14");
