@@ -308,10 +308,17 @@ bool system_motors_are_away(uint32_t cs) {
   return away;
 }
 
+/* A motor that is not of the system, while its program homes it. */
+static bool is_homed(uint32_t cs, uint32_t motor) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const struct move* m = &s->moves[s->executing];
+  return s->active && m->kind == MOVE_OWN && (m->own >> motor & 1u) != 0 && jog_is_of_program(motor);
+}
+
 void system_motors_ramp(uint32_t cs) {
   time_base_stay(cs);
   for (uint32_t motor = 0; motor < MOTORS; motor++)
-    if (axis_definitions[motor].assigned && axis_definitions[motor].cs == cs)
+    if ((axis_definitions[motor].assigned && axis_definitions[motor].cs == cs) || is_homed(cs, motor))
       (void)jog_stop_at(motor, i_variable_read(i_motor_real(motor + 1u, IXX15_ABORT_DECELERATION)));
 }
 

@@ -244,6 +244,27 @@ TEST_F(MotorStops, AbortRampsAtIxx15AndClosesLoops) {
   EXPECT_EQ(motors[3].loop, LOOP_CLOSED);
 }
 
+// What its program homes is a move of the system, of whomever the motor is; what somebody jogs is none.
+TEST_F(MotorStops, AbortStopsMotorsOfNoSystemThatItsProgramHomes) {
+  ASSERT_EQ(host("I223=20 #1J/#2J/ &1E"), "");
+  run(300);
+  for (const char* line : {"OPEN PROG 1 CLEAR", "HOME2", "CLOSE"}) ASSERT_EQ(host(line), "") << line;
+  for (const char* meanwhile : {"", "#2J-"}) {
+    ASSERT_EQ(host("&1B1R"), "");
+    run(200);
+    ASSERT_GT(step_of(1), 8);
+    ASSERT_EQ(host(meanwhile), "");
+    run(300);
+    const bool searches = jog_is_homing(1);
+    ASSERT_EQ(searches, *meanwhile == 0);
+    ASSERT_EQ(host("&1A"), "");
+    run(150);
+    EXPECT_EQ(step_of(1) == 0, searches);
+    EXPECT_FALSE(jog_is_homing(1));
+    EXPECT_FALSE(motors[1].status.home_complete);
+  }
+}
+
 TEST_F(MotorStops, I36SparesKilledMotorsAndEEnablesThem) {
   ASSERT_EQ(host("I36=1 &1A"), "");
   run(150);
