@@ -130,6 +130,7 @@ struct coordinate_system {
   bool matching;             /* B, R clears: axes are to be where motors are; before moves that wait at a start, */
   bool starting;             /* which is this: B, R clears; else behind them */
   bool matching_anew;        /* B: asked for once more, while it is worked out */
+  bool match_failed;         /* R: `error` is that of a PMATCH while no program ran */
   bool must_return;          /* B: stopped where a start goes on, so motors that were jogged meanwhile must be back */
   volatile bool restarts;    /* B, an abort clears it: a program begins when the motors stand (run/restart.h) */
   bool must_have_returned;   /* B: a start was refused because they are not */

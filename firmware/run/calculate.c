@@ -209,11 +209,13 @@ static bool runs_on(uint32_t cs) {
   return true;
 }
 
-/* PMATCH while no program runs: it leaves the motors alone. */
+/* PMATCH while no program runs: it leaves the motors alone, and the error of a program to its next start. */
 static void match(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   s->failure = RUN_TIME_NONE;
-  s->error = system_motors_match(cs) ? RUN_TIME_NONE : s->failure;
+  const bool found = system_motors_match(cs);
+  if (!found || s->match_failed) s->error = s->failure;
+  s->match_failed = !found;
   s->failure = RUN_TIME_NONE;
   s->matching = false;
 }

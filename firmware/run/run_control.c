@@ -155,6 +155,7 @@ static void set_run(uint32_t cs, bool begins, bool single_step) {
     s->own_stop = s->own_stop && waits; /* behind the moves that are still to be made */
     s->ended = s->ended && waits;
     s->failure = RUN_TIME_NONE;
+    s->match_failed = false;
     protection_begin(s->motors);
     if (!waits) s->may_join = false;
   }

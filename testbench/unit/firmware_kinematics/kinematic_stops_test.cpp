@@ -94,6 +94,35 @@ TEST_F(KinematicStops, AForwardProgramThatNeverEnds) {
   EXPECT_FALSE(run_is_running(0));
 }
 
+// One that succeeds takes back what another has said, but not why a program was stopped.
+TEST_F(KinematicStops, PmatchLeavesTheErrorOfAProgram) {
+  fit_arm();
+  store({"CALL99"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(30);
+  ASSERT_EQ(cs().error, RUN_TIME_PROGRAM);
+  ASSERT_EQ(host("&1PMATCH"), "");
+  platform::servo_ticks(600);
+  EXPECT_EQ(cs().error, RUN_TIME_PROGRAM);
+  for (const bool fails : {true, false}) {
+    program("FORWARD", fails ? Lines{"Q7=1/0", "WHILE(1=1)", "ENDWHILE"} : Lines{"Q7=1"});
+    ASSERT_EQ(host("&1PMATCH"), "");
+    platform::servo_ticks(600);
+    EXPECT_EQ(cs().error, fails ? RUN_TIME_KINEMATIC : RUN_TIME_NONE);
+  }
+  store({"CALL99"});
+  program("FORWARD", {"WHILE(1=1)", "ENDWHILE"});
+  ASSERT_EQ(host("&1PMATCH"), "");
+  platform::servo_ticks(600);
+  program("FORWARD", {"Q7=1"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(600);
+  ASSERT_EQ(cs().error, RUN_TIME_PROGRAM);
+  ASSERT_EQ(host("&1PMATCH"), "");
+  platform::servo_ticks(600);
+  EXPECT_EQ(cs().error, RUN_TIME_PROGRAM) << "a start lies between them";
+}
+
 // A long program is none that never ends.
 TEST_F(KinematicStops, ALongOneEnds) {
   fit_arm();
