@@ -53,12 +53,14 @@ bool motor_close(uint32_t motor) {
   return true;
 }
 
+/* A loop that a search for a phase reference has opened is opened anew, which ends that. */
 bool motor_open(uint32_t motor, int32_t output) {
   if (!motor_may_enable(motor)) return false;
-  if (motors[motor].loop != LOOP_OPEN) forget(motor);
+  const bool opens = motors[motor].loop != LOOP_OPEN || phasing_is_searched(motor);
+  if (opens) forget(motor);
   const uint32_t state = hal_mask_servo();
   motors[motor].open_output = output;
-  if (motors[motor].loop != LOOP_OPEN) enable(motor, LOOP_OPEN);
+  if (opens) enable(motor, LOOP_OPEN);
   hal_unmask(state);
   return true;
 }

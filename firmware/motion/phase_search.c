@@ -163,22 +163,35 @@ static void take_guesses(uint32_t motor, const struct search* s) {
   hal_unmask(state);
 }
 
-static void finish(uint32_t motor, struct search* s) {
-  const bool found = s->result == RESULT_FOUND;
+/* Who changes the state of the loop ends a search (commutation_enable) and has left the loop as it shall be. */
+static bool is_taken_over(uint32_t motor, struct search* s) {
+  if (phase_motors[motor].searched) return false;
+  s->kind = SEARCH_NONE;
   s->result = RESULT_NONE;
-  if (found && s->guesses) take_guesses(motor, s);
-  phase_motors[motor].searched = false;
   phasing_set_searched(motor, false);
-  if (found) phasing_set_missing(motor, false);
-  if (!found || !motor_close(motor)) motor_kill(motor);
+  return true;
 }
 
-/* Who changes the state of the loop ends a search (commutation_enable); a limit ends it. */
-static void look_for_an_end(uint32_t motor, struct search* s) {
+/* A kill by the real-time task comes before it or behind it. */
+static void finish(uint32_t motor, struct search* s) {
+  const bool found = s->result == RESULT_FOUND;
+  if (found && s->guesses) take_guesses(motor, s);
+  const uint32_t state = hal_mask_real_time();
+  if (!is_taken_over(motor, s)) {
+    s->result = RESULT_NONE;
+    phase_motors[motor].searched = false;
+    phasing_set_searched(motor, false);
+    if (found) phasing_set_missing(motor, false);
+    if (!found || !motor_close(motor)) motor_kill(motor);
+  }
+  hal_unmask(state);
+}
+
+static void look_for_a_limit(uint32_t motor, struct search* s) {
   const struct motor_findings* found = &motors[motor].found;
   const bool limit = found->positive_limit || found->negative_limit;
   const uint32_t state = hal_mask_servo();
-  if (s->kind != SEARCH_NONE && (limit || !phase_motors[motor].searched)) {
+  if (s->kind != SEARCH_NONE && limit) {
     s->kind = SEARCH_NONE;
     s->result = RESULT_FAILED;
   }
@@ -188,8 +201,8 @@ static void look_for_an_end(uint32_t motor, struct search* s) {
 void phasing_pass(void) {
   for (uint32_t left = phase_task_work; left != 0u; left &= left - 1u) { /* those that are commutated */
     const uint32_t motor = (uint32_t)__builtin_ctz(left);
-    if (!phasing_is_searched(motor)) continue;
-    look_for_an_end(motor, &searches[motor]);
+    if (!phasing_is_searched(motor) || is_taken_over(motor, &searches[motor])) continue;
+    look_for_a_limit(motor, &searches[motor]);
     if (searches[motor].result != RESULT_NONE) finish(motor, &searches[motor]);
   }
 }
@@ -236,7 +249,7 @@ static bool begin_search(uint32_t motor) {
 
 bool phasing_begin(uint32_t motor) {
   if (!phasing_is_needed(motor)) return motor_close(motor);
-  if (phasing_is_searched(motor)) return true;
+  if (phasing_is_searched(motor) && !is_taken_over(motor, &searches[motor])) return true;
   if (phase_absolute_is_set(motor)) return begin_absolute(motor);
   return begin_search(motor);
 }

@@ -361,6 +361,59 @@ TEST_F(PhaseSearch, AKillEndsTheSearchWithoutAReference) {
   for (unsigned n = 0; n < 3; ++n) EXPECT_EQ(y_word(kOutput + n), 0);
 }
 
+// Its loop is open, and stays so with what it is told to put out.
+TEST_F(PhaseSearch, AnOpenLoopCommandEndsTheSearchWithoutAReference) {
+  set("I169=20000");
+  for (const unsigned servos : {1u, 10u, 33u}) {  // the last: it has found the reference, which nobody has taken yet
+    plant::Motor motor = motor_at(100);
+    ASSERT_TRUE(phasing_begin(0));
+    run(motor, servos - 1);
+    for (unsigned i = 0; i < kPhasesOfServo; ++i) run_phase(motor);
+    c_.servo(1);
+    ASSERT_EQ(c_.line("#1O10"), "");
+    for (unsigned n = 0; n < 50; ++n) {
+      c_.servo(1);
+      phasing_pass();
+    }
+    EXPECT_FALSE(phasing_is_searched(0)) << servos;
+    EXPECT_TRUE(phasing_is_missing(0)) << servos;
+    EXPECT_EQ(motors[0].loop, LOOP_OPEN) << servos;
+    EXPECT_EQ(motors[0].output, 2000 * 256) << servos;
+    EXPECT_EQ(phase_motors[0].q.command, 2000 << (CURRENT_FRACTION_BITS - 15)) << servos;
+    EXPECT_FALSE(phase_motors[0].held) << servos;
+    motor_kill(0);
+  }
+}
+
+// It has found the reference, which nobody has taken yet: a motor that is killed then stays so.
+TEST_F(PhaseSearch, AKillBehindTheLastPartIsAKill) {
+  plant::Motor motor = motor_at(100);
+  ASSERT_TRUE(phasing_begin(0));
+  run(motor, 4 * 8);
+  for (unsigned n = 0; n < 3; ++n) {
+    for (unsigned i = 0; i < kPhasesOfServo; ++i) run_phase(motor);
+    c_.servo(1);
+  }
+  motor_kill(0);
+  phasing_pass();
+  EXPECT_EQ(motors[0].loop, LOOP_KILLED);
+  EXPECT_FALSE(phasing_is_searched(0));
+  EXPECT_TRUE(phasing_is_missing(0));
+}
+
+// So does `$` on one line with what has ended it.
+TEST_F(PhaseSearch, BeginsAnewBehindAKill) {
+  plant::Motor motor = motor_at(100);
+  ASSERT_TRUE(phasing_begin(0));
+  run(motor, 10);
+  motor_kill(0);
+  ASSERT_TRUE(phasing_begin(0));
+  EXPECT_EQ(motors[0].loop, LOOP_OPEN);
+  run(motor, 4 * 8 + 3);
+  EXPECT_FALSE(phasing_is_missing(0));
+  EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+}
+
 TEST_F(PhaseSearch, ALimitEndsTheSearchWithoutAReference) {
   set("I125=$78000");
   for (const unsigned limit : {17, 18}) {
