@@ -38,7 +38,7 @@ void motor_report_status(uint32_t motor) {
 /* In offset mode the position that commands count from goes with the master, and so does what is reported. */
 void motor_report_position(uint32_t motor) {
   const uint32_t at = base(motor);
-  int64_t position = long_word(at + MEMORY_MOTOR_ACTUAL) + long_word(at + MEMORY_MOTOR_COMPENSATION) +
+  int64_t position = long_word(at + MEMORY_MOTOR_ACTUAL) - long_word(at + MEMORY_MOTOR_COMPENSATION) +
                      long_word(at + MEMORY_MOTOR_BIAS);
   if (((uint32_t)variable(motor, IXX06_FOLLOWING_MODE) & FOLLOWING_OFFSET) != 0u)
     position -= long_word(at + MEMORY_MOTOR_MASTER);

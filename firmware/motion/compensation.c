@@ -66,7 +66,7 @@ static void take(struct set* set, enum region_kind kind, uint32_t motor) {
 static void leave(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
   compensation_of_position &= ~(1u << motor);
-  motors[motor].compensation += given[motor];
+  motors[motor].compensation -= given[motor];
   given[motor] = 0;
   hal_unmask(state);
 }

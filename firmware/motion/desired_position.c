@@ -77,7 +77,7 @@ void desired_position_motor_changed(uint32_t motor) {
   const uint32_t bit = 1u << (motor - 1u);
   desired_position_extras &= ~bit;
   if (follows || share != 0u || p->backlash_rate != 0 || p->error_most != 0) desired_position_extras |= bit;
-  if (p->backlash_rate == 0) motors[motor - 1u].compensation += p->taken_up;
+  if (p->backlash_rate == 0) motors[motor - 1u].compensation -= p->taken_up;
   if (p->backlash_rate == 0) p->taken_up = 0;
   hal_unmask(state);
 }
@@ -88,8 +88,8 @@ void desired_position_take_actual(uint32_t motor) {
   struct path* p = &paths[motor];
   FIXED_IN_REGISTER(m);
   FIXED_IN_REGISTER(p);
-  if ((compensation_of_position >> motor & 1u) != 0u) m->compensation = -compensation_position(motor) - p->taken_up;
-  const int64_t actual = m->actual, shown = actual + m->compensation;
+  if ((compensation_of_position >> motor & 1u) != 0u) m->compensation = compensation_position(motor) + p->taken_up;
+  const int64_t actual = m->actual, shown = actual - m->compensation;
   m->commanded = actual;
   m->desired_step = 0;
   if (m->held_back != 0) {
@@ -105,7 +105,7 @@ void desired_position_shift(uint32_t motor, int64_t by, int64_t place) {
   struct motor* m = &motors[motor];
   const int64_t corrected = m->loop == LOOP_CLOSED ? compensation_anew(motor, place) : 0, all = by + corrected;
   m->trajectory += by;
-  m->compensation -= corrected;
+  m->compensation += corrected;
   m->commanded += all;
   m->closed_at += all;
   m->actual += all;
@@ -184,9 +184,9 @@ void desired_position_with_extras(uint32_t motor) {
   if (p->follows) follow(m, p);
   const bool by_tables = (compensation_of_position >> motor & 1u) != 0u;
   if (by_tables || p->backlash_rate != 0) /* else it is a user's */
-    m->compensation = by_tables ? -compensation_position(motor) : 0;
-  if (p->backlash_rate != 0) m->compensation -= backlash(motor, m, p);
-  int64_t wanted = m->trajectory + m->master - m->compensation;
+    m->compensation = by_tables ? compensation_position(motor) : 0;
+  if (p->backlash_rate != 0) m->compensation += backlash(motor, m, p);
+  int64_t wanted = m->trajectory + m->master + m->compensation;
   if (p->share != 0u) wanted = filtered(m, p, wanted);
   if (p->error_most != 0) m->held_back = held_back(motor, p, wanted);
   wanted -= m->held_back;

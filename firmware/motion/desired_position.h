@@ -17,7 +17,7 @@ static inline void desired_position_servo(uint32_t motor) { /* 0..31, servo task
   if (m->loop != LOOP_CLOSED) return; /* the loop keeps it where the motor is */
   if (((desired_position_extras | compensation_of_position) >> motor & 1u) != 0u)
     return desired_position_with_extras(motor);
-  const int64_t wanted = m->trajectory + m->master - m->compensation, step = wanted - m->commanded;
+  const int64_t wanted = m->trajectory + m->master + m->compensation, step = wanted - m->commanded;
   m->commanded = wanted;
   m->desired_step = step == (int32_t)step ? (int32_t)step : step > 0 ? INT32_MAX : INT32_MIN;
 }

@@ -216,7 +216,7 @@ int64_t jog_commanded(uint32_t motor) {
 }
 
 int64_t jog_trajectory_at(uint32_t motor, int64_t actual) {
-  return actual - motors[motor].master + motors[motor].compensation;
+  return actual - motors[motor].master - motors[motor].compensation;
 }
 
 int64_t jog_actual(uint32_t motor) {

@@ -49,7 +49,7 @@ struct motor {
   int64_t actual;       /* D:+$0B */
   int64_t master;       /* position of the master that it follows, D:+$0D */
   int64_t held_back;    /* of the master: following error beyond Ixx67, with Ixx24 bit 13; D:+$0D is without it */
-  int64_t compensation; /* of the measured position, by tables and backlash: commanded has it subtracted; D:+$10 */
+  int64_t compensation; /* by tables and backlash: commanded has it added, what is reported taken off; D:+$10 */
   int64_t bias;         /* D:+$4C: not part of the loop; axis offsets and the like */
   int32_t desired_step; /* net desired position, less that of the last servo interrupt: 0 is "desired velocity zero" */
   int32_t velocity;     /* X:+$1D, raw velocity */

@@ -73,7 +73,7 @@ void ReportingBench::motors(const std::string& on, const std::string& off) {
                                           ? ""
                                           : number(exact) + ", expected " + number(reported));
     };
-    same("P", static_cast<double>(m.position + m.master + m.bias));
+    same("P", static_cast<double>(m.position - m.master + m.bias));
     same("V", m.velocity);
     same("F", static_cast<double>(m.following_error));
     compared.equal(name + "?", fmt::format("{:06X}{:06X}", m.servo_status, m.status), b_.ask(name + "?"));

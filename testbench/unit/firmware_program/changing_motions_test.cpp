@@ -273,7 +273,7 @@ TEST_F(ChangingMotions, BehindASearchThatIsStoppedJEqualsGoesToWhereItWasStopped
 // motion:4.2/14: from where the trigger was, whatever the motor follows.
 TEST_F(ChangingMotions, ATriggerIsAPlaceOfTheMotorNotOfItsTrajectory) {
   motors[0].master = position(300);
-  motors[0].compensation = position(-20);  // of what is measured
+  motors[0].compensation = position(20);  // of what is measured
   ASSERT_EQ(host("#1J:2000^40"), "");
   ticks(50);
   capture(200);  // the encoder stands at 0, where the motor is taken to be

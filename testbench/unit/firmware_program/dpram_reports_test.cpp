@@ -46,7 +46,7 @@ void move_motor_3() {
 
 void expect_as_reported(const MotorReport& m) {
   const auto number = [](const char* command) { return std::stod(host(command)); };
-  EXPECT_NEAR(static_cast<double>(m.position + m.master + m.bias) / kPositionScale, number("#3P"), 1.0 / 64);
+  EXPECT_NEAR(static_cast<double>(m.position - m.master + m.bias) / kPositionScale, number("#3P"), 1.0 / 64);
   EXPECT_NEAR(m.velocity / kPositionScale, number("#3V"), 1.0 / 64);
   EXPECT_NEAR(static_cast<double>(m.following_error) / kPositionScale, number("#3F"), 1.0 / 64);
   const std::string status = host("#3?");

@@ -62,12 +62,12 @@ TEST_F(MotorCommands, EachFormGoesWhereItSays) {
   jog("J^10", 10);  // the encoder stands at 0
 }
 
-// The trajectory is what jogs go by (motion:1.2/4): from where it is means less the master, and what is taken off.
+// The trajectory is what jogs go by (motion:1.2/4): from where it is means less the master and what is added.
 TEST_F(MotorCommands, FromWhereItIsLeavesMasterAndCompensationOut) {
   jog("#1J/", 0);
   motors[0].master = static_cast<std::int64_t>(1000 * kUnits);
   motors[0].compensation = static_cast<std::int64_t>(30 * kUnits);
-  jog("J^10", 10 - 1000 + 30);  // the encoder stands at 0
+  jog("J^10", 10 - 1000 - 30);  // the encoder stands at 0
 }
 
 TEST_F(MotorCommands, StarTakesTheDistanceOfTheRegister) {

@@ -266,7 +266,9 @@ TEST_F(DesiredPosition, PositionTables) {
   c_.line("I30=1");
   EXPECT_NEAR(at(0), 1, 0.005) << "the last entry";
   EXPECT_NEAR(at(125), 5.5, 0.005);
-  EXPECT_NEAR(static_cast<double>(motors[0].compensation) / kCount, -5.5, 0.005);
+  EXPECT_NEAR(static_cast<double>(motors[0].compensation) / kCount, 5.5, 0.005);
+  EXPECT_EQ(c_.line("RX$90"), "0");
+  EXPECT_NEAR(std::stod(c_.line("RY$90")) / kCount, 5.5, 0.005) << "what is added";
   c_.line("#1 DELETE COMP");
   EXPECT_EQ(at(125), 0);
 }
@@ -437,13 +439,13 @@ TEST_F(DesiredPosition, TablesGoByTheScalesOfBothMotors) {
   EXPECT_NEAR(at(-750), 10, 0.01);
 }
 
-// D:$90 of a motor without tables is the user's: actual position + D:$90 is what is reported.
-TEST_F(DesiredPosition, ACompensationThatIsWrittenIsTakenOff) {
+// D:$90 of a motor without tables is the user's: added to where it shall be, and hidden from what is reported.
+TEST_F(DesiredPosition, ACompensationThatIsWrittenIsAdded) {
   close();
   EXPECT_EQ(desired(5), 5);
   c_.line("WY$90," + std::to_string(3 * kCount));
-  EXPECT_EQ(desired(5), 2);
-  *hal_x(0x10F0) = 2 * 32;
+  EXPECT_EQ(desired(5), 8);
+  *hal_x(0x10F0) = 8 * 32;
   position_loop_servo(0);
   EXPECT_EQ(c_.line("#1P"), "5");
 }
@@ -453,13 +455,13 @@ TEST_F(DesiredPosition, ACompensationThatIsWrittenStays) {
   close();
   c_.line("WY$90," + std::to_string(3 * kCount));
   c_.line("I105=$10F5 I106=1 I140=0.000001");
-  EXPECT_NEAR(desired(5), 2, 0.001) << "a master, a filter";
+  EXPECT_NEAR(desired(5), 8, 0.001) << "a master, a filter";
   ASSERT_EQ(c_.line("#2 DEFINE COMP 4,1000"), "");
   ASSERT_EQ(c_.line("160 -80 48 16"), "");
   c_.line("I51=1 I208=48");
-  EXPECT_NEAR(desired(5), 2, 0.001) << "another motor's tables";
+  EXPECT_NEAR(desired(5), 8, 0.001) << "another motor's tables";
   c_.line("#2 DELETE COMP");
-  EXPECT_NEAR(desired(5), 2, 0.001);
+  EXPECT_NEAR(desired(5), 8, 0.001);
 }
 
 TEST_F(DesiredPosition, TorqueTables) {
