@@ -155,9 +155,11 @@ void CommunicationsProcessor::own(Client id, bool keeps_text) {
 
 // ------------------------------------------------------------------------------------------------------------ requests
 
-// One request of each client; whoever has had the controller's attention comes last.
+// One request of each client; whoever has had the controller's attention comes last. But a job that has ended is
+// replied to first: how it ended is known until the next one begins.
 bool CommunicationsProcessor::serve() {
-  bool some = false;
+  const auto ended = clients_.find(owner_);
+  bool some = ended != clients_.end() && ended->second.started && !dialogue_.busy() && serve(owner_, ended->second);
   auto at = clients_.upper_bound(turn_);
   for (std::size_t n = clients_.size(); n > 0 && waiting_ > 0; --n, ++at) {
     if (at == clients_.end()) at = clients_.begin();

@@ -16,6 +16,21 @@ TEST_F(CommunicationsProcessorTest, EachClientIsAnsweredItsOwn) {
   for (const auto& [client, reply] : found) EXPECT_EQ(reply, std::to_string(client) + "\r\x06");
 }
 
+// How a job ended is told although others wait to begin theirs. Whoever comes next may have a number before or behind.
+TEST_F(CommunicationsProcessorTest, EachClientIsToldHowItsOwnJobEnded) {
+  const Bytes refused("\x02\0\x03\x80", 4), report = "000000000800\r";
+  for (const unsigned other : {1u, 3u}) {
+    request(2, packet(Packet::kWriteBuffer, Bytes("=1\0bad", 6)));
+    request(2, packet(Packet::kControlResponse, "", 0x02, 0, 0xC0));
+    for (int i = 0; i < 3; ++i) request(other, packet(Packet::kGetResponse, "=1"));
+    run(200 * kMs);
+    Lines found;
+    for (const auto& [client, reply] : take())
+      if (client == 2) found.push_back(reply);
+    EXPECT_EQ(found, (Lines{refused, report})) << "beside client " << other;
+  }
+}
+
 TEST_F(CommunicationsProcessorTest, OneThatFloodsDoesNotStarveTheOthers) {
   for (int i = 0; i < 100; ++i) request(1, packet(Packet::kGetResponse, "flood"));
   request(2, packet(Packet::kGetResponse, "two"));
