@@ -14,17 +14,24 @@ namespace brick {
 
 namespace {
 
-// As the file has it, on one line and not too long.
-std::string found_text(const toml::node& node) {
+// On one line and not too long; at a NUL the message would end.
+std::string shown(std::string text) {
   constexpr std::size_t kShownCharacters = 40;
+  const std::string as_written = "\\u0000";
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  for (std::size_t at = 0; (at = text.find('\0', at)) != std::string::npos; at += as_written.size())
+    text.replace(at, 1, as_written);
+  return text.size() > kShownCharacters ? text.substr(0, kShownCharacters) + "..." : text;
+}
+
+// As the file has it.
+std::string found_text(const toml::node& node) {
   std::ostringstream out;
   if (const auto quoted = node.value_exact<std::string>())
     out << '"' << *quoted << '"';
   else
     node.visit([&](const auto& n) { out << n; });
-  std::string text = out.str();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.size() > kShownCharacters ? text.substr(0, kShownCharacters) + "..." : text;
+  return shown(out.str());
 }
 
 // Behind the string that begins at `at`; up to two more of its quotation marks belong to one in three.
@@ -74,8 +81,8 @@ TomlTable::TomlTable(std::string path, const toml::table& table, const std::vect
     : path_(std::move(path)), table_(&table) {
   for (const auto& [key, value] : table) {
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      throw UsageError(fmt::format("{}:{}: unknown key {}; expected {}", path_, key.source().begin.line, key.str(),
-                                   fmt::join(known, ", ")));
+      throw UsageError(fmt::format("{}:{}: unknown key {}; expected {}", path_, key.source().begin.line,
+                                   shown(std::string(key.str())), fmt::join(known, ", ")));
   }
 }
 
@@ -94,6 +101,7 @@ std::string TomlTable::text(const std::string& key) const { return text_in(key, 
 std::string TomlTable::text_in(const std::string& key, const toml::node& item) const {
   const auto value = item.value_exact<std::string>();
   if (!value) fail(item, key, "a text in quotes");
+  if (value->find('\0') != std::string::npos) fail(item, key, "a text without NUL");  // where names of files end
   return *value;
 }
 

@@ -215,6 +215,8 @@ TEST(BoardFile, ErrorsSayWhereWhatWasFoundAndWhatWasExpected) {
     const char *key, *line, *place, *found, *expected;
   } cases[] = {
       {"title", "title = 1", ":1: title:", "found 1;", "expected a text in quotes"},
+      {"title", "title = \"a\\u0000b\"", ":1: title:", "found \"a\\u0000b\";", "expected a text without NUL"},
+      {"title", "\"a\\u0000b\" = 1", ":1: unknown key", "a\\u0000b;", "expected title, family"},
       {"family", "family = \"vme\"", ":2: family:", "\"vme\"", "expected one of geo-brick-lv, turbo-pmac2"},
       {"bus", "bus = \"usb\"", ":3: bus:", "\"usb\"", "expected one of isa, pci, pc104, internal"},
       {"card", "card = \"603382\"", ":4: card:", "\"603382\"", "expected a card number of six digits"},
