@@ -1,6 +1,7 @@
 #include "app/recorder.h"
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -17,6 +18,12 @@ constexpr unsigned kServoTask = 2;  // of cpu.task, docs/signals.md
 
 // A field of RFC 4180: an M definition has commas.
 std::string field(const std::string& name) { return name.find(',') == std::string::npos ? name : '"' + name + '"'; }
+
+// Ten digits, and four behind the point of what is large: a word of 48 bits has 15, a motor far away as many.
+std::string number(double value) {
+  constexpr double kLarge = 1e6;
+  return std::abs(value) < kLarge ? fmt::format("{:.10g}", value) : fmt::format("{:.15g}", value);
+}
 
 }  // namespace
 
@@ -62,7 +69,7 @@ void Recorder::row() {
   if (!failure_.empty()) return;
   const RecordRow row{static_cast<double>(fell_) * 1e-12};
   out_ << fmt::format("{:.6f}", row.ms);
-  for (const RecordColumn& column : columns_) out_ << fmt::format(",{:.10g}", column.value(row));
+  for (const RecordColumn& column : columns_) out_ << ',' << number(column.value(row));
   out_ << '\n';
   if (out_) return;
   fail(errno);

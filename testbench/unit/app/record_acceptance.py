@@ -109,6 +109,16 @@ def record_fill_and_feed():
         check(abs(max(at["x"]) - 30) < 0.01, max(at["x"]))
 
 
+def record_large_numbers():
+    """Of a word of 48 bits, here of motor 32, which is not activated, each bit is there; four decimals of a quotient."""
+    words = ["WX$1008,$123456", "WY$1008,$ABCDEF", "WX$100B,$FFEDCB", "WY$100B,$000001", "@wait 2ms"]
+    with tempfile.TemporaryDirectory() as folder:
+        _, _, rows, _ = recorded(folder, words, of="D:$1008 D:$100B far=D:$1008/3072")
+        _, *last = rows[-1]
+        check(last[:2] == [0x123456ABCDEF, 0xFFEDCB000001 - (1 << 48)], last)
+        check(abs(last[2] - 0x123456ABCDEF / 3072) < 1e-4, last)
+
+
 def record_mistakes():
     with tempfile.TemporaryDirectory() as folder:
         file = str(pathlib.Path(folder, "r.csv"))
