@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 
@@ -253,8 +254,9 @@ struct Commands {
   }
 };
 
+// One line: an end of a line within it, as in the name of a file, is shown.
 int report_usage(const std::string& where, const std::string& text) {
-  std::cerr << where << ": " << readable_text(text.substr(0, text.find('\n'))) << '\n';
+  std::cerr << where << ": " << readable_text(text) << '\n';
   return 2;
 }
 
@@ -278,6 +280,9 @@ int main_command(int argc, char** argv) {
   }
   try {
     return commands.chosen();
+  } catch (const std::filesystem::filesystem_error& e) {  // a name of any option that the system does not take
+    return report_usage(where, fmt::format("{}: {}; expected the name of a file that can be reached",
+                                           cut_text(e.path1().string()), e.code().message()));
   } catch (const std::exception& e) {  // what is wrong during a run is caught by the commands
     return report_usage(where, e.what());
   }

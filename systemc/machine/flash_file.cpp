@@ -27,6 +27,9 @@ constexpr mode_t kPermissions = 0666;  // less the user's mask
 [[noreturn]] void fail(const std::string& file, const std::string& what) {
   throw std::runtime_error(fmt::format("flash file {}: {}", file, what));
 }
+[[noreturn]] void fail_to_read(const std::string& file, const std::string& why) {
+  fail(file, fmt::format("{}; expected one that brick has written, or none", why));
+}
 [[noreturn]] void fail_to_write(const std::string& file) {
   fail(file,
        fmt::format("cannot be written: {}; expected a file in a folder that can be written to", std::strerror(errno)));
@@ -110,15 +113,15 @@ void FlashFile::load(std::uint8_t* data, std::size_t bytes) {
   remove_what_is_left(file_);
   std::error_code error;
   const bool exists = std::filesystem::exists(file_, error);
-  if (error) fail(file_, "cannot be read: " + error.message());
+  if (error) fail_to_read(file_, "cannot be read: " + error.message());
   if (!exists) return write(data, bytes);  // tells now, not at the end, that it cannot be written
-  if (!std::filesystem::is_regular_file(file_)) fail(file_, "is not a file");
+  if (!std::filesystem::is_regular_file(file_)) fail_to_read(file_, "is not a file");
   const auto size = std::filesystem::file_size(file_, error);
-  if (error) fail(file_, "cannot be read: " + error.message());
+  if (error) fail_to_read(file_, "cannot be read: " + error.message());
   if (size != bytes) fail(file_, fmt::format("has {} bytes; expected {}", size, bytes));
   std::ifstream in(file_, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(data), static_cast<std::streamsize>(bytes)))
-    fail(file_, std::string("cannot be read: ") + std::strerror(errno));
+    fail_to_read(file_, std::string("cannot be read: ") + std::strerror(errno));
   if (!std::ofstream(file_, std::ios::binary | std::ios::app)) fail_to_write(file_);
   const NewFile probe(file_);
   known_.assign(data, data + bytes);

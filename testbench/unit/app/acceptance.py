@@ -425,6 +425,9 @@ def bad_input():
         (place / "bad.elf").write_text("no program")
         (place / "bad.toml").write_text("colour = 1\n")
         (place / "bad.flash").write_text("short")
+        (place / "loop").symlink_to("loop")
+        os.mkfifo(place / "pipe")
+        long = "n" * 300
         for arguments, script, what in [
             ([], "", "brick"),
             (["frob"], "", "frob"),
@@ -458,6 +461,10 @@ def bad_input():
             (["exec", "-", "--firmware", f"{folder}/bad.elf"], "", "bad.elf"),
             (["exec", "-", "--flash", f"{folder}/none/flash"], "", "none/flash"),
             (["exec", "-", "--flash", f"{folder}/bad.flash"], "", "bad.flash"),
+            (["exec", "-", "--flash", f"{folder}/pipe"], "", f"{folder}/pipe: is not a file"),
+            (["exec", "-", "--flash", f"{folder}/{long}"], "", "n...: File name too long"),
+            (["exec", "-", "--firmware", f"{folder}/loop"], "", f"{folder}/loop: Too many levels of symbolic links"),
+            (["exec", f"{folder}/two\nlines"], "", f"{folder}/two<0A>lines: cannot be read"),
             (["exec", "-", "--json", f"{folder}/none/x.json"], "", "none/x.json"),
             (["exec", "-", "--wave", f"{folder}/x.txt"], "", "x.txt"),
             (["exec", "-", "--wave", "/proc/none/x.vcd"], "", "/proc/none"),
