@@ -110,7 +110,7 @@ def record_fill_and_feed():
 
 
 def record_large_numbers():
-    """Of a word of 48 bits, here of motor 32, which is not activated, each bit is there; four decimals of a quotient."""
+    """Each bit of a word of 48, here of motor 32, which is not activated; four decimals of a quotient."""
     words = ["WX$1008,$123456", "WY$1008,$ABCDEF", "WX$100B,$FFEDCB", "WY$100B,$000001", "@wait 2ms"]
     with tempfile.TemporaryDirectory() as folder:
         _, _, rows, _ = recorded(folder, words, of="D:$1008 D:$100B far=D:$1008/3072")
