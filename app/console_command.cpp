@@ -107,6 +107,7 @@ class Console {
   void tell(const std::string& text);
   void fail(const std::string& text);
   void explain();
+  void connect_again();  // after a stop
   void paint();
   std::chrono::milliseconds wait();  // lets time pass; for how long there is nothing to do then
   void wait_anew();                  // from now on, whatever a command took
@@ -152,6 +153,16 @@ void Console::explain() {
   }
 }
 
+// Whoever presses the key once more stops this, too.
+void Console::connect_again() {
+  for (;;) try {
+      const bool answers = simulation_.link().connect(HostLink::kBootTime);
+      return answers ? void() : tell("the controller does not answer; see @reset and @power");
+    } catch (const Interrupted&) {
+      if (!simulation_.go_on()) throw;
+    }
+}
+
 bool Console::play(const std::string& line) {
   if (line.substr(0, line.find_last_not_of(" \t\r") + 1) == kQuit) return false;
   try {
@@ -164,7 +175,7 @@ bool Console::play(const std::string& line) {
   } catch (const Interrupted& e) {
     if (!terminal_ || !simulation_.go_on()) throw;
     tell(e.what());
-    if (!simulation_.link().connect(HostLink::kBootTime)) tell("the controller does not answer; see @reset and @power");
+    connect_again();
   }
   explain();
   return true;
@@ -212,8 +223,12 @@ void Console::paint() {
 std::chrono::milliseconds Console::wait() {
   HostBus& bus = simulation_.bus();
   const Tick due = terminal_->pacing.due(bus.now());
-  bus.advance_to(std::min(due, bus.now() + kPiece));
-  player_.print_unsolicited();
+  try {
+    bus.advance_to(std::min(due, bus.now() + kPiece));
+    player_.print_unsolicited();
+  } catch (const Interrupted&) {  // meant for a command that has just ended
+    if (!simulation_.go_on()) throw;
+  }
   return bus.now() < due ? std::chrono::milliseconds(0) : kNap;
 }
 
@@ -223,6 +238,7 @@ void Console::talk() {
   terminal_ = std::make_unique<Terminal>(simulation_.bus());
   LineEditor& editor = terminal_->editor;
   simulation_.show_progress = [this] { paint(); };
+  simulation_.bear_with_keys();
   player_.before_output = [&editor] { editor.make_room(); };
   editor.while_waiting = [this] { return wait(); };
   editor.on_control = [this](char key) {

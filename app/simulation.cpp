@@ -46,12 +46,13 @@ class HostThread : public sc_core::sc_module {
 
 // The signal that asked to stop; the next one ends the process at once.
 volatile std::sig_atomic_t asked_to_stop = 0;
+bool key_is_patient = false;  // the next SIGINT does not
 
 void stop_when_asked() {
   struct sigaction action {};
   action.sa_handler = [](int signal) { asked_to_stop = signal; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    action.sa_flags = static_cast<int>(signal == SIGINT && key_is_patient ? SA_RESTART : SA_RESETHAND | SA_RESTART);
     struct sigaction now {};
     if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) continue;  // as of nohup
     sigaction(signal, &action, nullptr);
@@ -233,6 +234,12 @@ void Simulation::end_with(int parent) {
   if (parent != 0 && parent != getppid())
     throw UsageError(fmt::format("--end-with {}: has not started this process; expected {}", parent, getppid()));
   parent_ = parent;
+}
+
+void Simulation::bear_with_keys() {
+  if (debugger_) return;
+  key_is_patient = true;
+  stop_when_asked();
 }
 
 bool Simulation::go_on() {

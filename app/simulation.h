@@ -65,7 +65,8 @@ class Simulation {
   // is none now; 0: there is none.
   void end_with(int parent);
 
-  bool go_on();  // after Interrupted: true when a key asked to stop (SIGINT), which may be asked again
+  void bear_with_keys();  // of a session at a terminal: SIGINT asks to stop, and never ends the process at once
+  bool go_on();           // after Interrupted: true when a key asked to stop (SIGINT), which may be asked again
 
   std::function<std::string()> progress_text;  // more for the line that a terminal shows
   std::function<void()> show_progress;         // instead of that line; often

@@ -163,6 +163,25 @@ def terminal():
         check(t.end() == 0, "@quit ends")
 
 
+def stopped_again():
+    """Who holds Ctrl-C down stops what takes long, and no session: some of them come when it has been stopped."""
+    t = Terminal()
+    t.expect("> ")
+    t.type("P1=15\r")
+    for _ in range(10):
+        t.type("@wait 9000s\r")
+        t.expect(r"9000s\r+\n")
+        t.expect_status(r"\d s")
+        for pause in range(40):
+            t.type("\x03")
+            time.sleep(pause * 2e-5)
+        t.expect("stopped by SIGINT")
+    t.type("\rP1\r")
+    t.expect(r"P1\r+\n(?:P1\r+\n)?15\r")
+    t.type(LEAVE)
+    check(t.end() == 0, f"exit status: {t.seen[t.looked:]!r}")
+
+
 def ended_by_signal():
     """The flash file is whole, the terminal as it was, the lines are kept; so when the terminal is gone."""
     with tempfile.TemporaryDirectory() as folder:
