@@ -277,6 +277,17 @@ TEST_F(HostLinkTest, TextBetweenRepliesIsUnsolicited) {
   EXPECT_TRUE(link.take_unsolicited().empty());
 }
 
+TEST_F(HostLinkTest, TextWithinAReplyIsUnsolicited) {
+  fake.controller = [](const std::string&) {
+    return std::string(
+        "\x02"
+        "ALARM\r25\r\x06");
+  };
+  EXPECT_EQ(link.command("P1").lines, (Lines{"25"}));
+  EXPECT_EQ(link.take_unsolicited(), (Lines{"ALARM"}));
+  EXPECT_TRUE(link.take_unsolicited().empty());
+}
+
 // A text without CR (I62 = 1) is none of the reply, whatever comes next.
 TEST_F(HostLinkTest, TextWithoutEndIsNoneOfTheReply) {
   fake.controller = [](const std::string&) { return std::string("25\r\x06"); };
