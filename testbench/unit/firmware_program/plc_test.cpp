@@ -3,6 +3,7 @@
 
 extern "C" {
 #include "firmware/run/plc.h"
+#include "testbench/unit/firmware_platform/fake_hal.h"
 }
 
 namespace {

@@ -69,7 +69,7 @@ TEST(ControllerAnswer, EndsWithItsAcknowledgeWithoutAWait) {
 TEST(ControllerAnswer, ThreeRightChecksumsAreBelieved) {
   ControllerAnswer answer(command_checksum("P1..3"), false);
   ASSERT_EQ(checksum("A\r"), 'N');
-  for (const Bytes& expected : {"", "", "A\rA\rA\r"}) {
+  for (const char* expected : {"", "", "A\rA\rA\r"}) {
     for (const char c : Bytes("A\rN")) answer.take(static_cast<std::uint8_t>(c));
     EXPECT_EQ(answer.release(), expected);
   }
