@@ -26,10 +26,13 @@ SLOW_I52, RAM_I52 = 21, 13
 RD_HIGH = 2.75 * 1000 / (CPU * (SLOW_I52 + 1)) - 4.0
 RD_HIGH_RAM = 1.75 * 1000 / (CPU * (RAM_I52 + 1)) - 4.0
 RAM, STROBES = "u_dpram.", "u_bus_strobes."  # cells
-RELEASE = r"\bu_(reset_sync\.u_pwm|reset)\.sync2_q"  # lets go of the reset, in reset_sync and in a servo IC's chip
+RELEASE = r"\bu_(core\.u_reset_sync\.u_pwm\.sync2|chip\.rst)_q"  # lets go of the reset, on the board, in a servo IC
+# From the board's chip to that of a servo IC the reset has a tick, of which this is the board's part.
+RESET_PART = 6.2
 # Which pads must keep a time, and the rows of host-bus they are for: to a flip-flop, or from one.
 PORT_A_IN, ISA_IN = r"pa_.*_n?io?", r"isa_(?!sd_io|resetdrv).*_n?i"
 D, TA, MEMCS16, CLOCKS = r"pa_d(ata)?_io", r"pa_ta_n_?o", r"isa_memcs16_n_?io", r"(phase|servo)_io"
+RESET_OUT, RESET_IN = "rst_ref_no", "rst_ref_ni"
 SHOWN = r"(pa|isa|phase|servo|trip|equ|wdo|rst_ref)_"
 Row = collections.namedtuple("Row", "rule what has limit")
 
@@ -192,6 +195,10 @@ def rows(found):
                       worst(found, D, "ram") - ta, BEHIND_TA)),
              (CLOCKS, Row("servo-ic:5.1/11", "PHASE, SERVO from chip to chip, without the wire",
                           worst(found, CLOCKS, "out") + PAD_OUT + SKEW + worst(found, CLOCKS, "in") + PAD_IN, TICK)),
+             (RESET_OUT, Row("host-bus:2.6", "clock to the reset of the servo ICs, its part of a tick",
+                             worst(found, RESET_OUT, "out") + PAD_OUT + SKEW, RESET_PART)),
+             (RESET_IN, Row("host-bus:2.6", "reset from the board's chip to a flip-flop, the rest of that tick",
+                            (worst(found, RESET_IN, "in") or math.inf) + PAD_IN, TICK - RESET_PART)),
              (CLOCKS, Row("servo-ic:5.1/8", "clock to the enable of PHASE, SERVO, which are high then",
                           worst(found, CLOCKS, "enable") + PAD_OUT + SKEW, 3 * TICK)),
              (ISA_IN, Row("host-bus:3.4, t8", "command to IOCHRDY low, 5 ticks between", 5 * TICK + isa_in +

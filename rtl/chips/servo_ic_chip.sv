@@ -1,7 +1,7 @@
 // A servo IC as a chip of its own on a board of chips: it hears Port A itself, decodes the whole address and answers
 // for the number that its straps say, m for IC m, m + 8 for IC m*; PHASE and SERVO are pins of two ways, as I7m07 has
 // them. Clocks are made in this chip, in phase with all others; rst_ref_ni is let go by the board's chip in step with
-// clk_ref and passes the two flip-flops on clk_pwm here that it passes there, so all chips start with the same edge.
+// clk_ref and passes two flip-flops on clk_pwm here as it does there, so all chips start with the same edge.
 // Pads are the vendor's: in, out and enable of those of two ways stand apart here. docs/chips.md.
 `default_nettype none
 
@@ -33,8 +33,15 @@ module servo_ic_chip (
   output logic [motor_pins_pkg::OutBits-1:0]     motor_o
 );
 
-  logic rst_ni;
-  sync2 u_reset (.clk_i(clk_pwm_i), .rst_ni(rst_ref_ni), .d_i(1'b1), .q_o(rst_ni));
+  // The level has one clk_pwm from the other chip's flip-flop. So the first one here is not cleared by it: it can stand
+  // at the pad, as that of PHASE does, and is in time. The second one acts at once.
+  logic rst_taken_q, rst_q, rst_ni;
+  always_ff @(posedge clk_pwm_i) rst_taken_q <= rst_ref_ni;
+  always_ff @(posedge clk_pwm_i or negedge rst_ref_ni) begin
+    if (!rst_ref_ni) rst_q <= 1'b0;
+    else             rst_q <= rst_taken_q;
+  end
+  assign rst_ni = rst_q;
 
   logic [4:0] number_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin

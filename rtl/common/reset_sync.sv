@@ -7,7 +7,7 @@ module reset_sync (
   input  wire logic clk_pwm_i,
   input  wire logic clk_ref_i,
   input  wire logic rst_pin_ni,
-  output logic      rst_ref_no,  // released with clk_ref_i: for another chip, whose second half is a sync2 as u_pwm
+  output logic      rst_ref_no,  // released with clk_ref_i: for another chip, which has a second half of its own
   output logic      rst_no
 );
 

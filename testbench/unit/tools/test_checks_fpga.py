@@ -189,7 +189,7 @@ class Pads(unittest.TestCase):
             self.assertIn("| inf |", "".join(fpga_pads.page([(found, None)])))
 
     def test_the_flip_flop_that_releases_the_reset_is_known_in_each_chip(self):
-        for cell in ("u_board.u_core.u_reset_sync.u_pwm.sync2_q", "u_chip.u_reset.sync2_q"):
+        for cell in ("u_chip.u_core.u_reset_sync.u_pwm.sync2_q", "u_chip.rst_q"):
             sdf = SDF.replace("u_core.u_reset_sync.u_pwm.sync2_q", cell)
             self.assertAlmostEqual(fpga_pads.delays(fpga_pads.read(sdf.splitlines()))[1], 0.4 + 4.0 + 0.287)
         nobody = fpga_pads.delays(fpga_pads.read(SDF.replace("u_reset_sync", "u_other").splitlines()))
@@ -215,6 +215,11 @@ class Pads(unittest.TestCase):
         found = {"servo_io": {"in": 1.0, "out": 2.0, "enable": 9.0}}
         self.assertEqual([(row.rule, f"{row.has:.2f}", f"{row.limit:.2f}") for row in fpga_pads.rows(found)],
                          [("servo-ic:5.1/11", "7.62", "8.48"), ("servo-ic:5.1/8", "12.92", "25.43")])
+
+    def test_the_reset_of_the_servo_ics_has_a_tick_in_two_parts(self):
+        rows = [*fpga_pads.rows({"rst_ref_no": {"out": 1.5}}), *fpga_pads.rows({"rst_ref_ni": {"in": 1.25}})]
+        self.assertEqual([(f"{row.has:.2f}", f"{row.limit:.2f}") for row in rows], [("5.42", "6.20"), ("1.95", "2.28")])
+        self.assertEqual(fpga_pads.rows({"rst_ref_ni": {}})[0].has, math.inf)  # it only clears flip-flops
 
     def test_a_pad_that_is_late_is_the_first_row_and_missed(self):
         found = {"pa_ta_no": {"out": 6.2}, "pa_a_i": {"in": 2.0}}
