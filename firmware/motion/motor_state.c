@@ -18,10 +18,13 @@ static bool is_activated(uint32_t motor) { return ((motors_active >> motor) & 1u
 
 bool motor_may_enable(uint32_t motor) { return is_activated(motor) && status_motors_may_enable(); }
 
+static bool is_ready(uint32_t motor) {
+  return motor_may_enable(motor) && !phasing_is_missing(motor) && !phasing_is_searched(motor);
+}
+
 bool motor_may_close(uint32_t motor) {
   const uint32_t first = i_motor(motor + 1u, IXX03_FEEDBACK_ADDRESS); /* then velocity */
-  return motor_may_enable(motor) && !phasing_is_missing(motor) && !phasing_is_searched(motor) &&
-         i_integer(i_esa(motor + 1u, IYY00_EXTENDED_SERVO)) == 0 &&
+  return is_ready(motor) && i_integer(i_esa(motor + 1u, IYY00_EXTENDED_SERVO)) == 0 &&
          !conversion_table_is_not_built((uint32_t)i_integer(first)) &&
          !conversion_table_is_not_built((uint32_t)i_integer(first + 1u));
 }
@@ -41,28 +44,33 @@ static void enable(uint32_t motor, enum motor_loop loop) {
   motor_flags_enable(motor, true);
 }
 
+/* What is quick to see is looked at once more: the real-time task may have taken the motor away. */
 bool motor_close(uint32_t motor) {
   if (motors[motor].loop == LOOP_CLOSED) return true;
   if (!motor_may_close(motor)) return false;
-  forget(motor);
   const uint32_t state = hal_mask_servo();
-  desired_position_take_actual(motor);
-  position_loop_restart(motor);
-  enable(motor, LOOP_CLOSED);
+  const bool ready = is_ready(motor);
+  if (ready) {
+    forget(motor);
+    desired_position_take_actual(motor);
+    position_loop_restart(motor);
+    enable(motor, LOOP_CLOSED);
+  }
   hal_unmask(state);
-  return true;
+  return ready;
 }
 
 /* A loop that a search for a phase reference has opened is opened anew, which ends that. */
 bool motor_open(uint32_t motor, int32_t output) {
-  if (!motor_may_enable(motor)) return false;
-  const bool opens = motors[motor].loop != LOOP_OPEN || phasing_is_searched(motor);
-  if (opens) forget(motor);
   const uint32_t state = hal_mask_servo();
-  motors[motor].open_output = output;
-  if (opens) enable(motor, LOOP_OPEN);
+  const bool may = motor_may_enable(motor), opens = motors[motor].loop != LOOP_OPEN || phasing_is_searched(motor);
+  if (may) motors[motor].open_output = output;
+  if (may && opens) {
+    forget(motor);
+    enable(motor, LOOP_OPEN);
+  }
   hal_unmask(state);
-  return true;
+  return may;
 }
 
 /* Whatever there is of it, a search for a phase reference too. */

@@ -239,12 +239,16 @@ static bool begin_search(uint32_t motor) {
   motor_kill(motor);
   phasing_set_missing(motor, true);
   motor_open(motor, 0);
-  if (motors[motor].loop != LOOP_OPEN) return false;
-  phasing_set_searched(motor, true);
-  phase_motors[motor].searched = true;
-  searches[motor] = s;
-  searches[motor].kind = stepper ? SEARCH_STEPPER : SEARCH_GUESSES;
-  return true;
+  const uint32_t state = hal_mask_servo(); /* nor does a kill come between */
+  const bool begins = motors[motor].loop == LOOP_OPEN;
+  if (begins) {
+    phasing_set_searched(motor, true);
+    phase_motors[motor].searched = true;
+    searches[motor] = s;
+    searches[motor].kind = stepper ? SEARCH_STEPPER : SEARCH_GUESSES;
+  }
+  hal_unmask(state);
+  return begins;
 }
 
 bool phasing_begin(uint32_t motor) {

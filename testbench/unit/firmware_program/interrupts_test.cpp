@@ -11,6 +11,10 @@ extern "C" {
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/motor_state.h"
+#include "firmware/motion/phase_motor.h"
+#include "firmware/motion/phase_search.h"
+#include "firmware/motion/phasing.h"
 #include "firmware/variables/words.h"
 #include "testbench/unit/firmware_program/published.h"
 }
@@ -185,6 +189,65 @@ TEST_F(Interrupts, BinaryLinesAreExecutedOnceAndInOrder) {
     platform::power_up();
     EXPECT_EQ(binary_stream(seed, 20 + seed % 3 * 40, seed % 2 != 0, seed > 3), "") << "seed " << seed;
   }
+}
+
+void take_motor_1_away(fake_task task) {
+  if (task == FAKE_REAL_TIME) i_variable_write(100, 0);
+}
+
+// PLC 0 may take a motor away while it is being enabled: nothing controls it then.
+TEST_F(Interrupts, AMotorThatIsTakenAwayMeanwhileIsNotEnabled) {
+  constexpr std::uint32_t kControl = 0x78005, kEnable = 1u << 14;
+  ASSERT_EQ(host("I124=$120001"), "");
+  unsigned refused = 0, killed = 0;
+  for (const bool closes : {true, false}) {
+    for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+      ASSERT_EQ(host("I100=1 #1K"), "");
+      fake_interrupts_begin(seed, 100000);
+      fake_interrupts_on_take(take_motor_1_away);
+      fake_interrupts_soon();
+      const bool enabled = closes ? motor_close(0) : motor_open(0, 100);
+      fake_interrupts_on_take(nullptr);
+      fake_interrupts_end();
+      if ((motors_active & 1u) != 0) continue;  // it came no more
+      (enabled ? killed : refused)++;
+      ASSERT_EQ(motors[0].loop, LOOP_KILLED) << seed;
+      ASSERT_EQ(motors_enabled & 1u, 0u) << seed;
+      ASSERT_EQ(*hal_x(kControl) & kEnable, 0u) << seed;
+    }
+  }
+  EXPECT_GT(refused, 20u);
+  EXPECT_GT(killed, 20u);
+}
+
+void kill_motor_1(fake_task task) {
+  if (task != FAKE_SERVO) return;
+  motor_kill(0);
+  fake_interrupts_on_take(nullptr);
+}
+
+// So a search for a phase reference does not begin with a motor that is killed meanwhile.
+TEST_F(Interrupts, AKillComesBeforeASearchOrEndsIt) {
+  ASSERT_EQ(host("I100=1 I101=1 I171=1000 I173=1000 I174=5"), "");
+  unsigned before = 0, behind = 0;
+  for (std::uint32_t seed = 1; seed <= 2000; ++seed) {
+    fake_interrupts_begin(seed, 80);
+    fake_interrupts_on_take(kill_motor_1);
+    const bool begins = phasing_begin(0);
+    fake_interrupts_on_take(nullptr);
+    fake_interrupts_end();
+    (begins ? behind : before)++;
+    if (motors[0].loop == LOOP_KILLED) {
+      ASSERT_FALSE(phase_motors[0].searched) << seed;
+      phasing_pass();
+      ASSERT_EQ(motors[0].loop, LOOP_KILLED) << seed;
+    }
+    motor_kill(0);
+    phasing_pass();
+    ASSERT_FALSE(phasing_is_searched(0));
+  }
+  EXPECT_GT(before, 2u);
+  EXPECT_GT(behind, 20u);
 }
 
 // The host makes X incremental, a program Y, at the same time. Both are afterwards.
