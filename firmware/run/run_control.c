@@ -171,6 +171,13 @@ static void set_run(uint32_t cs, bool begins, bool single_step) {
   cs_busy |= 1u << cs;
 }
 
+/* One may have tripped since check_motors. Servo task held off. */
+static bool any_open(uint32_t of) {
+  for (uint32_t left = of; left != 0; left &= left - 1u)
+    if (motors[__builtin_ctz(left)].loop != LOOP_CLOSED) return true;
+  return false;
+}
+
 /* A program that ends or fails while this looks at it has had its start: it is not begun anew. */
 error_t run_start(uint32_t cs, bool single_step) {
   struct coordinate_system* s = &coordinate_systems[cs];
@@ -198,6 +205,10 @@ error_t run_start(uint32_t cs, bool single_step) {
   if (begins ? (jogs_busy & s->motors) != 0 : !s->running) {
     hal_unmask(state);
     return begins ? ERR_MOVE_IN_PROGRESS : ERR_NONE;
+  }
+  if (begins && any_open(s->motors)) {
+    hal_unmask(state);
+    return ERR_OPEN_LOOP;
   }
   set_run(cs, begins, single_step);
   hal_unmask(state);

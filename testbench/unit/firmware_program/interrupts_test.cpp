@@ -250,6 +250,30 @@ TEST_F(Interrupts, AKillComesBeforeASearchOrEndsIt) {
   EXPECT_GT(behind, 20u);
 }
 
+// A motor that trips while R looks at it: no program runs with it.
+TEST_F(Interrupts, AMotorThatTripsDuringAStartHasNoProgram) {
+  constexpr std::uint32_t kStatus = 0x78000, kFault = 1u << 15;
+  ASSERT_EQ(host("I100=1 I124=$820001 I111=0 I112=0 &1#1->1000X"), "");
+  ASSERT_EQ(host("OPEN PROG 1 CLEAR INC TM1000 X1 X1 X1 CLOSE"), "");
+  unsigned refused = 0, aborted = 0;
+  for (std::uint32_t seed = 1; seed <= 400; ++seed) {
+    *hal_x(kStatus) &= ~kFault;
+    ASSERT_EQ(host("&1E B1"), "");
+    platform::servo_ticks(3);
+    ASSERT_EQ(motors[0].loop, LOOP_CLOSED);
+    *hal_x(kStatus) |= kFault;
+    fake_interrupts_begin(seed, 60);
+    const error_t error = run_start(0, false);
+    fake_interrupts_end();
+    platform::servo_ticks(12);
+    (error == ERR_NONE ? aborted : refused)++;
+    ASSERT_EQ(motors[0].loop, LOOP_KILLED);
+    ASSERT_FALSE(run_is_running(0)) << seed;
+  }
+  EXPECT_GT(aborted, 20u);
+  EXPECT_GT(refused, 2u);
+}
+
 // The host makes X incremental, a program Y, at the same time. Both are afterwards.
 bool both_are_incremental(std::uint32_t seed) {
   EXPECT_EQ(host("ABS B2R"), "");
