@@ -18,13 +18,10 @@ static bool is_activated(uint32_t motor) { return ((motors_active >> motor) & 1u
 
 bool motor_may_enable(uint32_t motor) { return is_activated(motor) && status_motors_may_enable(); }
 
-static bool is_ready(uint32_t motor) {
-  return motor_may_enable(motor) && !phasing_is_missing(motor) && !phasing_is_searched(motor);
-}
-
 bool motor_may_close(uint32_t motor) {
   const uint32_t first = i_motor(motor + 1u, IXX03_FEEDBACK_ADDRESS); /* then velocity */
-  return is_ready(motor) && i_integer(i_esa(motor + 1u, IYY00_EXTENDED_SERVO)) == 0 &&
+  return motor_may_enable(motor) && !phasing_is_missing(motor) && !phasing_is_searched(motor) &&
+         i_integer(i_esa(motor + 1u, IYY00_EXTENDED_SERVO)) == 0 &&
          !conversion_table_is_not_built((uint32_t)i_integer(first)) &&
          !conversion_table_is_not_built((uint32_t)i_integer(first + 1u));
 }
@@ -44,31 +41,35 @@ static void enable(uint32_t motor, enum motor_loop loop) {
   motor_flags_enable(motor, true);
 }
 
-/* What is quick to see is looked at once more: the real-time task may have taken the motor away. */
+/* The real-time task may have taken the motor away since it was looked at. Servo task held off. */
+static bool is_still_there(uint32_t motor) {
+  return ((motors_active & ~phasing_missing & ~phasing_searched) >> motor & 1u) != 0u;
+}
+
 bool motor_close(uint32_t motor) {
   if (motors[motor].loop == LOOP_CLOSED) return true;
   if (!motor_may_close(motor)) return false;
+  forget(motor);
   const uint32_t state = hal_mask_servo();
-  const bool ready = is_ready(motor);
-  if (ready) {
-    forget(motor);
+  const bool there = is_still_there(motor);
+  if (there) {
     desired_position_take_actual(motor);
     position_loop_restart(motor);
     enable(motor, LOOP_CLOSED);
   }
   hal_unmask(state);
-  return ready;
+  return there;
 }
 
 /* A loop that a search for a phase reference has opened is opened anew, which ends that. */
 bool motor_open(uint32_t motor, int32_t output) {
+  const bool opens = motors[motor].loop != LOOP_OPEN || phasing_is_searched(motor);
+  if (!motor_may_enable(motor)) return false;
+  if (opens) forget(motor);
   const uint32_t state = hal_mask_servo();
-  const bool may = motor_may_enable(motor), opens = motors[motor].loop != LOOP_OPEN || phasing_is_searched(motor);
+  const bool may = is_activated(motor); /* the real-time task may have taken it away */
   if (may) motors[motor].open_output = output;
-  if (may && opens) {
-    forget(motor);
-    enable(motor, LOOP_OPEN);
-  }
+  if (may && opens) enable(motor, LOOP_OPEN);
   hal_unmask(state);
   return may;
 }

@@ -9,8 +9,8 @@
 enum { COMMUTATED = 1, ALTERNATE_MODE = 1 }; /* Ixx01, Ixx96 */
 
 /* Bit n-1 of motor n. Background and real-time task, which is held off meanwhile. */
-static volatile uint32_t synchronous_of, missing_of;
-volatile uint32_t phasing_searched;
+static volatile uint32_t synchronous_of;
+volatile uint32_t phasing_missing, phasing_searched;
 
 static void put(volatile uint32_t* bits, uint32_t motor, bool value) {
   const uint32_t state = hal_mask_real_time();
@@ -21,9 +21,9 @@ static void put(volatile uint32_t* bits, uint32_t motor, bool value) {
 static bool has(uint32_t bits, uint32_t motor) { return ((bits >> motor) & 1u) != 0u; }
 
 bool phasing_is_needed(uint32_t motor) { return has(synchronous_of, motor); }
-bool phasing_is_missing(uint32_t motor) { return has(missing_of, motor); }
+bool phasing_is_missing(uint32_t motor) { return has(phasing_missing, motor); }
 bool phasing_is_searched(uint32_t motor) { return has(phasing_searched, motor); }
-void phasing_set_missing(uint32_t motor, bool missing) { put(&missing_of, motor, missing); }
+void phasing_set_missing(uint32_t motor, bool missing) { put(&phasing_missing, motor, missing); }
 void phasing_set_searched(uint32_t motor, bool searched) { put(&phasing_searched, motor, searched); }
 
 static bool is_synchronous(uint32_t motor) { /* 1..32 */
@@ -37,12 +37,12 @@ void phasing_motor_changed(uint32_t motor) {
   const uint32_t state = hal_mask_real_time();
   if (synchronous != has(synchronous_of, motor - 1u)) {
     put(&synchronous_of, motor - 1u, synchronous);
-    put(&missing_of, motor - 1u, synchronous);
+    put(&phasing_missing, motor - 1u, synchronous);
   }
   hal_unmask(state);
 }
 
 void phasing_initialize(void) {
-  synchronous_of = missing_of = phasing_searched = 0;
+  synchronous_of = phasing_missing = phasing_searched = 0;
   for (uint32_t motor = 1; motor <= MOTORS; ++motor) phasing_motor_changed(motor);
 }

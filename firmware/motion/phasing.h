@@ -11,7 +11,7 @@ void phasing_motor_changed(uint32_t motor); /* 1..32: Ixx01, Ixx78 or Ixx96 was 
 bool phasing_is_needed(uint32_t motor);     /* a synchronous motor that the phase task commutates. Any task */
 bool phasing_is_missing(uint32_t motor);    /* bit 8. Any task */
 bool phasing_is_searched(uint32_t motor);   /* bit 9. Any task */
-extern volatile uint32_t phasing_searched;  /* of all motors, bit n-1 of motor n */
+extern volatile uint32_t phasing_missing, phasing_searched; /* of all motors, bit n-1 of motor n */
 /* Background and real-time task; users may write bit 8 too. */
 void phasing_set_missing(uint32_t motor, bool missing);
 void phasing_set_searched(uint32_t motor, bool searched);
