@@ -155,7 +155,15 @@ bool ControllerDialogue::step(Tick limit) {
   return changed_;
 }
 
-// A mark, an echo or a checksum that comes when nobody waits for it any more.
+// What an answer begins with is a character of text, CR or LF, or one that stands for something.
+bool ControllerDialogue::may_begin_answer(std::uint8_t c) const {
+  constexpr std::string_view kOthers("\x02\x06\x07\r\n\0", 6);
+  const char text = static_cast<char>(c);
+  return is_binary() || (c >= ' ' && c < 0x7F) || kOthers.find(text) != std::string_view::npos;
+}
+
+// A mark, an echo or a checksum that comes when nobody waits for it any more. The next line may have been sent already,
+// where it is a CR alone.
 bool ControllerDialogue::is_stray(std::uint8_t c) {
   if (late_mark_ && c == kMark) {
     late_mark_ = false;
@@ -163,12 +171,12 @@ bool ControllerDialogue::is_stray(std::uint8_t c) {
   }
   const std::optional<std::uint8_t> sum = late_sum_;
   late_sum_.reset();
-  if (phase_ == Phase::kAnswer) return false;
+  if (phase_ == Phase::kAnswer && (!answer_.empty() || may_begin_answer(c))) return false;
   if (sum && c == *sum) {
     had_sums_ = true;
     return true;
   }
-  return static_cast<char>(c) == kClearInput;
+  return phase_ != Phase::kAnswer && static_cast<char>(c) == kClearInput;
 }
 
 void ControllerDialogue::received(std::uint8_t c) {

@@ -76,6 +76,7 @@ class ControllerDialogue {
   std::uint8_t checksum() const;  // of the first item
   void put_next();
   void received(std::uint8_t c);
+  bool may_begin_answer(std::uint8_t c) const;
   bool is_stray(std::uint8_t c);
   bool is_binary() const;  // the answer to the first item is
   bool may_have_ended() const;

@@ -179,6 +179,22 @@ TEST_F(CommunicationsProcessorTest, ChecksumsReachNobody) {
   }
 }
 
+// A line that turns checksums on has one behind its acknowledge. An empty line has been sent by then.
+TEST_F(CommunicationsProcessorTest, AChecksumBehindTheNextLineIsNoneOfItsAnswer) {
+  fake().controller = [this](const Bytes& line) {
+    if (line.empty()) return Bytes("\x06\0", 2);
+    fake().later.emplace_back(bus_.now(), "\x06");
+    fake().later.emplace_back(bus_.now() + kMs / 10, "\x04");
+    return Bytes();
+  };
+  const Bytes line = "=sumr";
+  ASSERT_EQ(command_checksum(line), 0x04);
+  request(1, packet(Packet::kGetResponse, line));
+  request(2, packet(Packet::kGetResponse, ""));
+  run(20 * kMs);
+  EXPECT_EQ(take(), (Replies{{1, "\x06"}, {2, "\x06"}}));
+}
+
 // ------------------------------------------------------------------------------------------------------- WRITEBUFFER
 
 // ethernet:5
