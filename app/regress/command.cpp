@@ -255,9 +255,16 @@ class Regression {
     return waiting.size() != before;
   }
 
+  // Those of an earlier call, which would pass for one of a run that leaves no waveform.
+  void remove_replays() const {
+    std::error_code failed;
+    for (std::size_t b = 1; b <= kMostReplays; ++b) fs::remove_all(fmt::format("{}/bucket-{}", folder_, b), failed);
+  }
+
   // The first run of each kind again, with the last millisecond before the failure as a waveform and the view of its
   // bench beside it.
   void replay() {
+    remove_replays();
     replays_.resize(buckets_.size());
     Pool pool(1);
     for (std::size_t b = 0; b < std::min(buckets_.size(), kMostReplays) && asked_to_stop == 0; ++b) {
@@ -281,7 +288,9 @@ class Regression {
       const Result again = judge(run, *ended, beside);
       if (again.step != result.step)
         replays_[b].note = "the run that was to be replayed " +
-                           (again.passed() ? "passed this time" : fmt::format("failed elsewhere: {}", again.step));
+                           (again.passed()       ? "passed this time"
+                            : again.step.empty() ? fmt::format("ended otherwise: {}: {}", again.verdict, again.says)
+                                                 : fmt::format("failed elsewhere: {}", again.step));
       if (fs::exists(beside + "/" + name + ".fst")) replays_[b].wave = name + "/" + name + ".fst";
       const std::string own = view_path(run.group), view = own.empty() ? view_path(kUsualView) : own;
       if (view.empty()) continue;

@@ -59,6 +59,21 @@ def regress_odd_files():
     check([c.get("classname") for c in cases] == [f"<07>{i}" for i in range(len(commands))], "names in XML")
 
 
+def regress_earlier_replays():
+    """What an earlier call has replayed is not in the folder of another failure, nor of none."""
+    row = '[[row]]\nnegative = true\nbench = '
+    folder = Folder(row + '["smoke", "flags"]\n')
+    folder.regress()
+    kinds = [b["group"] for b in folder.report()["buckets"]]
+    waves = [folder.out / f"bucket-{n}" / f"bucket-{n}.fst" for n in (1, 2)]
+    check(len(kinds) == 2 and all(wave.exists() for wave in waves), f"{kinds}")
+    mark = folder.out / "bucket-1/of-before"
+    mark.touch()
+    folder.write(row + f'"{kinds[1]}"\n')
+    folder.regress()
+    check(waves[0].exists() and not mark.exists() and not waves[1].exists(), "replays of the call before are left")
+
+
 def regress_long_names():
     """A name longer than that of a folder may be costs nothing; two that begin alike are two."""
     long = 280 * "n"
