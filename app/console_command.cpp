@@ -153,14 +153,17 @@ void Console::explain() {
   }
 }
 
-// Whoever presses the key once more stops this, too.
+// A key that is held down begins it anew: nothing is answered without it.
 void Console::connect_again() {
-  for (;;) try {
-      const bool answers = simulation_.link().connect(HostLink::kBootTime);
-      return answers ? void() : tell("the controller does not answer; see @reset and @power");
+  for (;;) {
+    try {
+      if (!simulation_.link().connect(HostLink::kBootTime))
+        tell("the controller does not answer; see @reset and @power");
+      return;
     } catch (const Interrupted&) {
       if (!simulation_.go_on()) throw;
     }
+  }
 }
 
 bool Console::play(const std::string& line) {

@@ -19,7 +19,7 @@ constexpr unsigned kServoTask = 2;  // of cpu.task, docs/signals.md
 // A field of RFC 4180: an M definition has commas.
 std::string field(const std::string& name) { return name.find(',') == std::string::npos ? name : '"' + name + '"'; }
 
-// Ten digits, and four behind the point of what is large: a word of 48 bits has 15, a motor far away as many.
+// Ten digits, of what is large 15: a word of 48 bits has as many.
 std::string number(double value) {
   constexpr double kLarge = 1e6;
   return std::abs(value) < kLarge ? fmt::format("{:.10g}", value) : fmt::format("{:.15g}", value);

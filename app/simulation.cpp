@@ -50,7 +50,9 @@ bool key_is_patient = false;  // the next SIGINT does not
 
 void stop_when_asked() {
   struct sigaction action {};
-  action.sa_handler = [](int signal) { asked_to_stop = signal; };
+  action.sa_handler = [](int signal) {
+    if (signal != SIGINT || asked_to_stop == 0) asked_to_stop = signal;  // a key takes nothing back
+  };
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     action.sa_flags = static_cast<int>(signal == SIGINT && key_is_patient ? SA_RESTART : SA_RESETHAND | SA_RESTART);
     struct sigaction now {};

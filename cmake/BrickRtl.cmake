@@ -22,7 +22,10 @@ endforeach()
 # brick_verilate(brick_rtl TOP board_sim PREFIX Vboard_s2 CONFIG a.vlt SOURCES a.sv ARGS -GMask=1): one model more in a
 # library, of its list of files when it says no others. Flip-flops and memories start as its context's randReset() says.
 function(brick_verilate library)
-  cmake_parse_arguments(V "" "TOP;PREFIX;CONFIG" "SOURCES;ARGS" ${ARGN})
+  cmake_parse_arguments(V "" "TOP;PREFIX" "CONFIG;SOURCES;ARGS" ${ARGN})
+  if(V_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "brick_verilate(${library}): nobody reads ${V_UNPARSED_ARGUMENTS}")
+  endif()
   if(NOT V_SOURCES)
     brick_rtl_list(V_SOURCES ${V_TOP})
   endif()

@@ -2,8 +2,8 @@
 // Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit.
 pins/motor_pins_pkg.sv
 regs/brick_regs_pkg.sv
-common/sync2.sv
 board/bus_strobes.sv
+common/sync2.sv
 board/bus_sync.sv
 board/address_decode.sv
 board/bus_read.sv

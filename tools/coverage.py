@@ -184,11 +184,11 @@ controls and planted misreadings ([verification plan]({PLAN.removeprefix('docs/'
 
 ## RTL and models
 
-Lines and branches of the RTL that ran at least once in any instance, of the board of two ICs, of chips or of a module
-alone; bits that rose and fell in one instance of a chip or module that is tested alone, or of what the board adds; lines
-of the SystemC model. A module that is wires alone has nothing to count. The last column is a hash of the source of the
-RTL that was measured, without comments and blanks; `docs.coverage` names the rows whose source is another now, and the
-plan `release` fails with them. That a model has changed it does not see.
+Lines and branches of the RTL that ran at least once in any instance, of chips, of modules alone or, but for files of
+these chips, of the board of two ICs; bits that rose and fell in one instance; lines of the SystemC model. A module of
+wires alone has nothing to count. The last column is a hash of the source of the RTL that was measured, without comments
+and blanks; `docs.coverage` names the rows whose source is another now, and the plan `release` fails with them. That a
+model has changed it does not see.
 
 {table("modules", of_modules)}
 ## C++ and C

@@ -239,7 +239,8 @@ def page(placed):
     for row in sorted((max(same, key=lambda row: row.has) for same in judged.values()), key=spare):
         missed = "" if spare(row) >= 0 else " **missed**"
         yield f"| {row.rule} | {row.what} | {row.has:.1f} | {row.limit:.1f} | {spare(row):.1f}{missed} |"
-    found, reset = of_all(placed), max((reset for _, reset in placed if reset is not None), default=None)
+    found, resets = of_all(placed), [reset for _, reset in placed]
+    reset = None if None in resets else max(resets)
     least = ((i52, wait_states(found, i52)) for i52 in (0, 7, 9, 15, 23, 31))
     told = ", ".join(f"{'none' if states is None else states} at {i52}" for i52, states in least)
     yield from ("", f"Least wait states of gate ICs on this chip, by I52: {told}.", "",

@@ -198,12 +198,13 @@ class Pads(unittest.TestCase):
     def test_of_several_placements_each_line_is_that_of_the_worst(self):
         late = {"pa_ta_no": {"out": 6.2}, "pa_a_i": {"in": 2.0}}
         soon = {"pa_ta_no": {"out": 3.0}, "pa_a_i": {"in": 7.0}}
-        for placed in ([(late, 8.0), (soon, 5.0)], [(soon, None), (late, 8.0)]):
+        for placed in ([(late, 8.0), (soon, 5.0)], [(soon, 5.0), (late, 8.0)]):
             text = "\n".join(fpga_pads.page(placed))
             self.assertIn("clock to /TA | 10.1 | 10.0 | -0.1 **missed** |", text)
             self.assertIn("pads of Port A to a flip-flop | 8.1 | 8.5 | 0.4 |", text)
             self.assertIn("| `pa_a_i` | 7.00 |", text)
             self.assertIn("8.00 ns after its clock", text)
+        self.assertIn("no flip-flop that is known **missed**", "\n".join(fpga_pads.page([(late, 8.0), (soon, None)])))
 
     def test_the_ram_may_be_a_tick_less_1_41_ns_behind_its_ta(self):
         found = {"pa_data_io": {"ram": 10.0}, "pa_ta_n_o": {"ram": 3.0, "out": 1.0}}
