@@ -37,6 +37,7 @@ struct LineEditor::Impl {
     el_set(edit, EL_HIST, history, past);
     el_set(edit, EL_GETCFN, &Impl::next_key);
     el_set(edit, EL_SETTY, "-d", "-isig", "-ixon", "-iexten", nullptr);  // ^C ^S ^Q ^V are keys like others
+    el_set(edit, EL_SETTY, "-x", "+noflsh", nullptr);  // while a command runs: ^C takes no text away that is under way
     el_set(edit, EL_ADDFN, "controller-key", "send the control character to the controller", &Impl::control_key);
     el_set(edit, EL_ADDFN, "leave", "end the session", &Impl::leave_key);
     for (const char letter : kOfController)

@@ -37,9 +37,6 @@ class Terminal:
         if self.child == 0:
             os.environ["TERM"] = "xterm"
             fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
-            attributes = termios.tcgetattr(0)
-            attributes[3] |= termios.NOFLSH  # else ^C takes away what we have not read yet
-            termios.tcsetattr(0, termios.TCSANOW, attributes)
             signal.signal(signal.SIGINT, signal.SIG_DFL)
             if stdout is not None:
                 os.dup2(stdout, 1)
