@@ -3,6 +3,7 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/motor.h"
 
 struct axis_definition axis_definitions[MOTORS];
 uint32_t axis_motors[COORDINATE_SYSTEMS];
@@ -17,7 +18,12 @@ void axis_define(uint32_t motor, const struct axis_definition* definition) {
   if (axis_definitions[motor].assigned) axis_motors[axis_definitions[motor].cs] &= ~bit;
   axis_definitions[motor] = *definition;
   if (definition->assigned) axis_motors[definition->cs] |= bit;
+  motors[motor].cs = axis_definition_time_base(motor);
   hal_unmask(state);
+}
+
+uint32_t axis_definition_time_base(uint32_t motor) {
+  return axis_definitions[motor].assigned ? axis_definitions[motor].cs : 0u;
 }
 
 uint32_t axis_definition_motors(uint32_t cs) {

@@ -22,6 +22,7 @@ extern uint32_t axis_motors[COORDINATE_SYSTEMS]; /* bit n-1: motor n is assigned
 
 void axis_definition_initialize(void); /* none: SAVEd definitions are put back by the start-up */
 void axis_define(uint32_t motor, const struct axis_definition* definition);
-uint32_t axis_definition_motors(uint32_t cs); /* motors assigned to it */
+uint32_t axis_definition_time_base(uint32_t motor); /* whose time the motor goes by: of none, that of &1 */
+uint32_t axis_definition_motors(uint32_t cs);       /* motors assigned to it */
 
 #endif

@@ -61,7 +61,7 @@ struct motor {
   /* variables, V */
   int32_t position_scale;           /* Ixx08, at least 1 here */
   int32_t velocity_scale;           /* Ixx09 */
-  uint32_t cs;                      /* coordinate system whose time base it moves by */
+  uint32_t cs;                      /* coordinate system whose time base it moves by; with its axis definition */
   bool origin_follows;              /* Ixx06 bit 1: what commands count from goes with the master */
   struct motor_status_flags status; /* jogs, S or who asks for one, the servo task held off */
   struct motor_findings found;      /* B, but for what is S */

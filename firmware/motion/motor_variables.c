@@ -3,6 +3,7 @@
 #include "firmware/base/rework.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/average_velocity.h"
+#include "firmware/motion/axis_definition.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/desired_position.h"
@@ -74,6 +75,7 @@ void motor_variables_initialize(void) {
   compensation_initialize();
   conversion_table_servo(); /* where encoders stand now is position 0 */
   for (uint32_t motor = 1; motor <= MOTORS; ++motor) {
+    motors[motor - 1u].cs = axis_definition_time_base(motor - 1u);
     if (i_integer(i_motor(motor, IXX00_ACTIVATED)) != 0) {
       motor_variables_changed(motor);
     } else { /* the first variable that is written makes the rest: a start has 25 ms */

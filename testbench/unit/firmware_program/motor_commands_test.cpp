@@ -62,6 +62,33 @@ TEST_F(MotorCommands, EachFormGoesWhereItSays) {
   jog("J^10", 10);  // the encoder stands at 0
 }
 
+// motion:4.1/4: the time of its coordinate system, of none that of &1, whenever it is told to which it belongs.
+TEST_F(MotorCommands, GoesByTheTimeOfItsCoordinateSystem) {
+  for (const char* line : {"I5194=8388607 I5294=8388607 I5394=8388607", "&1%25", "&2%50", "&3%75"})
+    ASSERT_EQ(host(line), "") << line;
+  const auto speed = [] {
+    run(200);
+    const double before = commanded();
+    run(100);
+    return (commanded() - before) / (100 * platform::kDefaultI10 / 8388608.0);
+  };
+  ASSERT_EQ(host("&2#1->X #1J+"), "");
+  EXPECT_NEAR(speed(), 10, 0.01);
+  ASSERT_EQ(host("#1->0"), "");
+  EXPECT_NEAR(speed(), 5, 0.01) << "of none";
+  ASSERT_EQ(host("&3#1->X"), "");
+  EXPECT_NEAR(speed(), 15, 0.01);
+  ASSERT_EQ(host("UNDEFINE ALL"), "");
+  EXPECT_NEAR(speed(), 5, 0.01);
+  ASSERT_EQ(host("&2#1->X"), "");
+  ASSERT_EQ(host("I100=0 I100=1 #1J+"), "");
+  EXPECT_NEAR(speed(), 10, 0.01) << "activated behind its definition";
+  ASSERT_EQ(host("#1K SAVE"), "");
+  platform::reset();
+  for (const char* line : {"&2%50", "#1J+"}) ASSERT_EQ(host(line), "") << line;
+  EXPECT_NEAR(speed(), 10, 0.01) << "of a definition that was saved";
+}
+
 // The trajectory is what jogs go by (motion:1.2/4): from where it is means less the master and what is added.
 TEST_F(MotorCommands, FromWhereItIsLeavesMasterAndCompensationOut) {
   jog("#1J/", 0);

@@ -52,6 +52,33 @@ class ProgramsAndJogs : public MovingMotors {
   }
 };
 
+// A motor of &2 leaves the path of &2, and its RAPID moves are held with that; &1 stands meanwhile.
+TEST_F(ProgramsAndJogs, MotorsOfAnotherSystemGoByThat) {
+  fit({"1000X"});
+  quick();
+  for (const char* line : {"I115=0.5 I5295=200000 I5294=200000 I5194=200000", "#1->0", "&2#1->1000X", "&1%10"})
+    ASSERT_EQ(host(line), "") << line;
+  store({"INC TM1000 TA20 TS0", "X20", "X20"});
+  ASSERT_EQ(host("&2B1R"), "");
+  ticks(200);
+  ASSERT_NEAR(speed(), 20, 0.01);
+  const double from = at(1);
+  ASSERT_EQ(host("&2A"), "");
+  rest();
+  EXPECT_NEAR(at(1) - from, 20 * 20 / (2 * 0.5), 20 * 4 * kTickMs) << "at Ixx15";
+  store({"RAPID X100"});
+  ASSERT_EQ(host("&2B1R"), "");
+  ticks(200);
+  ASSERT_NEAR(speed(), 20, 0.01);
+  ASSERT_EQ(host("H"), "");
+  ticks(100);
+  EXPECT_EQ(speed(), 0);
+  ASSERT_EQ(host("R"), "");
+  ticks(100);
+  EXPECT_NEAR(speed(), 20, 0.01);
+  ASSERT_EQ(host("A"), "");
+}
+
 // motion:4.1/4, motion:5.5/1: `H` stops a RAPID move, R goes on with it.
 TEST_F(ProgramsAndJogs, ARapidMoveThatIsHeldGoesOn) {
   fit({"1000X"});
