@@ -55,7 +55,7 @@ static void take(struct set* set, enum region_kind kind, uint32_t motor) {
       .unit = kind == REGION_TCOMP ? 1 : motors[table->target].position_scale * (POSITION_SUBCOUNT / PART_OF_COUNT),
       .source = table->source,
       .next = set->first[kind][table->target],
-      .of_desired = table->of_desired,
+      .of_desired = table->of_desired || kind == REGION_BLCOMP,
       .wraps = i_integer(I30_COMPENSATION_TABLE_WRAP) != 0};
   set->first[kind][table->target] = (uint8_t)motor;
   if (kind == REGION_COMP) set->of_position |= 1u << table->target;

@@ -570,10 +570,12 @@ TEST_F(DesiredPosition, BacklashTables) {
   c_.line("I51=1 I185=8388607 I186=80 I187=0");
   close();
   EXPECT_EQ(desired(500), 500);
-  *hal_x(0x10F0) = 500 * 32;
+  *hal_x(0x10F0) = 900 * 32;
   position_loop_servo(0);
   desired_position_pass();
-  EXPECT_NEAR(desired(499), 499 - 5 - 1, 0.01);
+  EXPECT_NEAR(desired(499), 499 - 5 - 1, 0.01) << "where it is asked to be, not where it is";
+  desired_position_pass();
+  EXPECT_NEAR(desired(250), 250 - 5 - 0.5, 0.01);
 }
 
 TEST_F(DesiredPosition, ACountedPositionMovesNothing) {
