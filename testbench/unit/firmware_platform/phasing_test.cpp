@@ -17,7 +17,10 @@ extern "C" {
 namespace brick {
 namespace {
 
-class Phasing : public CommutationRig {};
+class Phasing : public CommutationRig {
+ protected:
+  void TearDown() override { EXPECT_FALSE(fake_hal_masked()) << "a section that holds a task off was not left"; }
+};
 
 TEST_F(Phasing, IsMissingForSynchronousMotors) {
   EXPECT_TRUE(phasing_is_missing(0));

@@ -358,6 +358,32 @@ TEST_F(StopsOfMotors, RotaryAxesGoTheShortestWay) {
   EXPECT_EQ(motors[0].trajectory, position(16000));
 }
 
+// motion:4.4/4: below 0 the sign of the target is the direction, and 0 has none: upwards.
+TEST_F(StopsOfMotors, RotaryAxesGoUpwardsTo0) {
+  fit({"100A"});
+  ASSERT_EQ(host("I127=-36000 I128=0"), "");
+  store({"TM100 TA20 TS0 A90", "A0"});
+  run();
+  EXPECT_EQ(motors[0].trajectory, position(36000));
+  store({"TM100 TA20 TS0 A-90"});
+  run();
+  EXPECT_EQ(motors[0].trajectory, position(27000)) << "downwards";
+}
+
+// Motors of others keep their bias.
+TEST_F(StopsOfMotors, PsetIsForMotorsOfItsSystem) {
+  fit({"1000X", "10Y", "100Z"});
+  ASSERT_EQ(host("#2->0"), "");
+  motors[1].bias = 1234;
+  motors[1].trajectory = 777;
+  store({"PSET X1 Y5 Z2", "P1=1"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(30);
+  EXPECT_EQ(motors[0].bias, position(1000));
+  EXPECT_EQ(motors[1].bias, 1234);
+  EXPECT_EQ(motors[2].bias, position(200));
+}
+
 TEST_F(StopsOfMotors, PsetMovesTheOriginOfAxes) {
   fit({"1000X", "10Y"});
   store({"TM100 TA20 TS0 X3 Y2", "PSET X1", "P1=1", "X2"});

@@ -386,6 +386,18 @@ TEST_F(ConversionTable, ExponentialFilter) {
   }
 }
 
+// motion:2.2/18: what a step is rounded by is kept, and kept once. In 1/256 of the result a step of 1 with K = 3/4 is
+// at 192, 240, 252, 255, 255 and 3/4, 256 and 1/2 less what the last one has left.
+TEST_F(ConversionTable, AFilterKeepsWhatItRoundsOnce) {
+  c_.line("I8000=$D010F0 I8001=4000 I8002=6291456 I8003=0");
+  conversion_table_servo();
+  x(kFree, 1);
+  for (const int expected : {0, 0, 0, 0, 0, 1, 1}) EXPECT_EQ(once(2), expected);
+  x(kFree, 0);
+  for (int i = 0; i < 5; ++i) conversion_table_servo();
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(once(2), 0);
+}
+
 // Tf = 1000: nothing is lost on the way, however slow it is.
 TEST_F(ConversionTable, ASlowFilterArrives) {
   c_.line("I8000=$D010F0 I8001=8388607 I8002=8380 I8003=0");
