@@ -72,7 +72,8 @@ static bool had_no_data(uint32_t motor) {
 /* A move of a program is timed, and so is one of a jog whose end is known. */
 static bool is_timed(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
-  return motors[motor].status.timed_move || (motors[motor].path == PATH_SYSTEM && coordinate_systems[d->cs].active);
+  const bool of_system = d->assigned && motors[motor].path == PATH_SYSTEM;
+  return motors[motor].status.timed_move || (of_system && coordinate_systems[d->cs].active);
 }
 
 static uint32_t of_variables(uint32_t motor) {

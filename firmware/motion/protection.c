@@ -110,10 +110,11 @@ static struct view look(uint32_t motor) {
 
 static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
 
-/* On its way by a jog or by a program, a DWELL too. */
+/* On its way by a jog or by a program, a DWELL too. Who belongs to no system any more is where one has left it. */
 static bool is_moved(uint32_t motor) {
   if (jog_is_moving(motor)) return true;
-  return motors[motor].path == PATH_SYSTEM && coordinate_systems[axis_definitions[motor].cs].active;
+  const struct axis_definition* d = &axis_definitions[motor];
+  return d->assigned && motors[motor].path == PATH_SYSTEM && coordinate_systems[d->cs].active;
 }
 
 static bool is_in_position(uint32_t motor, int64_t error, int32_t desired_step) {

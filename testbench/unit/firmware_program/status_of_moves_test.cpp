@@ -4,6 +4,7 @@
 extern "C" {
 #include "firmware/base/dpram.h"
 #include "firmware/motion/jog.h"
+#include "firmware/motion/protection.h"
 #include "firmware/run/run_control.h"
 }
 
@@ -40,6 +41,25 @@ TEST_F(StatusOfMoves, TheMode) {
     EXPECT_EQ(word(2) & 0x2Cu, 0u) << mode.line;
     platform::servo_ticks(400);
   }
+}
+
+// A motor that its program has moved, and that is of no system since, has nothing to do with what &1 executes.
+TEST_F(StatusOfMoves, AMotorThatIsOfNoSystemAnyMoreIsNotMoved) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I128=160 I188=0 I228=160 I288=0"), "");
+  store({"LINEAR TM100 TA20 TS0 X1 Y1"});
+  ASSERT_EQ(host("&1B1R"), "");
+  ticks(300);
+  ASSERT_EQ(host("#2->0"), "");
+  store({"LINEAR TM500 TA20 TS0 X2"});
+  ASSERT_EQ(host("&1B1R"), "");
+  ticks(200);
+  EXPECT_TRUE(of_motor(1, 17));
+  EXPECT_FALSE(of_motor(2, 17)) << "move timer";
+  motors[1].actual = motors[1].closed_at = motors[1].commanded;
+  protection_pass();
+  EXPECT_TRUE(motors[1].found.in_position);
+  EXPECT_FALSE(motors[0].found.in_position);
 }
 
 // Bit 0 of word 1: moves of 500 ms. What stands behind one is read when that begins.
