@@ -151,7 +151,10 @@ int sc_main(int count, char* arguments[]) {
   } else if (options["--engine"] != "model") {
     return usage("--engine " + options["--engine"]);
   }
-  const unsigned long seed = std::strtoul(options["--seed"].c_str(), nullptr, 10);
+  const std::string& number = options["--seed"];
+  if (number.empty() || number.size() > 19 || number.find_first_not_of("0123456789") != std::string::npos)
+    return usage("--seed " + number + ": is no number");
+  const unsigned long seed = std::stoul(number);
 
   TimeBase time("time");
   ServoIc ic("ic", time, engine);
