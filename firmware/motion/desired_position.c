@@ -7,6 +7,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/average_velocity.h"
 #include "firmware/motion/compensation.h"
+#include "firmware/motion/desired_path.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/position_loop.h"
@@ -14,22 +15,6 @@
 #include "firmware/variables/words.h"
 
 enum { FOLLOWS = 1, OFFSET_MODE = 2, PART_OF_COUNT = 16, ERROR_SATURATES = 1 << 13 /* Ixx24 */ };
-
-static struct path {
-  /* V */
-  const volatile uint32_t* master; /* word of Ixx05 */
-  bool follows;
-  int32_t master_scale;
-  uint32_t share;                                       /* 2^32 (1 - Ixx40); 0: no filter */
-  int64_t backlash, backlash_rate, backlash_hysteresis; /* position; rate a background pass */
-  int64_t error_most;                                   /* Ixx67 where what is beyond it is held back; else 0 */
-  /* S */
-  uint32_t master_reading;
-  uint32_t fraction; /* of the filtered position, 2^-32 */
-  int64_t turning;   /* how far the trajectory has come in its direction */
-  int64_t taken_up;  /* backlash at present */
-  bool down;         /* direction of the last movement */
-} paths[MOTORS];
 
 uint32_t desired_position_extras;
 static volatile uint32_t backlash_due; /* bit n: that of motor n may move. B sets all, S clears */
@@ -47,7 +32,7 @@ static uint32_t share_of(double gain) {
 }
 
 void desired_position_initialize(void) {
-  __builtin_memset(paths, 0, sizeof paths);
+  __builtin_memset(desired_paths, 0, sizeof desired_paths);
   backlash_due = 0;
 }
 
@@ -55,7 +40,7 @@ void desired_position_pass(void) { backlash_due = UINT32_MAX; }
 
 void desired_position_motor_changed(uint32_t motor) {
   static const volatile uint32_t zero;
-  struct path* p = &paths[motor - 1u];
+  struct desired_path* p = &desired_paths[motor - 1u];
   const uint32_t address = (uint32_t)variable(motor, IXX05_MASTER_ADDRESS);
   const uint32_t share = share_of(i_variable_read(I_MOTOR_BLOCK * motor + (uint32_t)IXX40_DESIRED_POSITION_FILTER));
   const uint32_t mode = (uint32_t)variable(motor, IXX06_FOLLOWING_MODE);
@@ -82,25 +67,6 @@ void desired_position_motor_changed(uint32_t motor) {
   hal_unmask(state);
 }
 
-/* A table goes with the motor, wherever that is turned. */
-void desired_position_take_actual(uint32_t motor) {
-  struct motor* m = &motors[motor];
-  struct path* p = &paths[motor];
-  FIXED_IN_REGISTER(m);
-  FIXED_IN_REGISTER(p);
-  if ((compensation_of_position >> motor & 1u) != 0u) m->compensation = compensation_position(motor) + p->taken_up;
-  const int64_t actual = m->actual, shown = actual - m->compensation;
-  m->commanded = actual;
-  m->desired_step = 0;
-  if (m->held_back != 0) {
-    m->master -= m->held_back;
-    m->held_back = 0;
-  }
-  if (p->follows) p->master_reading = *p->master;
-  m->trajectory = shown - m->master;
-  p->turning = shown;
-}
-
 void desired_position_shift(uint32_t motor, int64_t by, int64_t place) {
   struct motor* m = &motors[motor];
   const int64_t corrected = m->loop == LOOP_CLOSED ? compensation_anew(motor, place) : 0, all = by + corrected;
@@ -109,15 +75,15 @@ void desired_position_shift(uint32_t motor, int64_t by, int64_t place) {
   m->commanded += all;
   m->closed_at += all;
   m->actual += all;
-  paths[motor].turning += by;
+  desired_paths[motor].turning += by;
   average_velocity_shift(motor, all);
-  if (m->loop != LOOP_CLOSED && (compensation_of_position >> motor & 1u) != 0u) desired_position_take_actual(motor);
+  if (m->loop != LOOP_CLOSED && (compensation_of_position >> motor & 1u) != 0u) desired_path_take_actual(motor);
 }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */
 
 /* A motor in a limit follows out of it only. */
-static void follow(struct motor* m, struct path* p) {
+static void follow(struct motor* m, struct desired_path* p) {
   const uint32_t reading = *p->master;
   const int64_t step = (int64_t)hal_signed(reading - p->master_reading) * p->master_scale;
   p->master_reading = reading;
@@ -135,14 +101,14 @@ static void publish_master(uint32_t motor, const struct motor* m) {
 }
 
 /* How far `wanted` is beyond the error that the loop would see in this interrupt. */
-static int64_t held_back(uint32_t motor, const struct path* p, int64_t wanted) {
+static int64_t held_back(uint32_t motor, const struct desired_path* p, int64_t wanted) {
   const int64_t error = wanted - position_loop_measured(motor), most = p->error_most;
   if (error > most) return error - most;
   return error < -most ? error + most : 0;
 }
 
 /* The direction turns when the trajectory has come back by more than Ixx87. */
-static int64_t backlash(uint32_t motor, const struct motor* m, struct path* p) {
+static int64_t backlash(uint32_t motor, const struct motor* m, struct desired_path* p) {
   const int64_t position = m->trajectory + m->master;
   const int64_t forward = p->down ? p->turning - position : position - p->turning;
   if (forward >= 0) {
@@ -165,7 +131,7 @@ static int64_t backlash(uint32_t motor, const struct motor* m, struct path* p) {
 }
 
 /* Part `share` of the way to `wanted`, with what is left over kept: it arrives exactly. */
-static int64_t filtered(const struct motor* m, struct path* p, int64_t wanted) {
+static int64_t filtered(const struct motor* m, struct desired_path* p, int64_t wanted) {
   const int64_t way = wanted - m->commanded;
   const uint64_t low = (uint64_t)(uint32_t)way * p->share;
   const uint64_t fraction = (uint64_t)p->fraction + (uint32_t)low;
@@ -180,7 +146,7 @@ static int32_t saturated(int64_t value) {
 
 void desired_position_with_extras(uint32_t motor) {
   struct motor* m = &motors[motor];
-  struct path* p = &paths[motor];
+  struct desired_path* p = &desired_paths[motor];
   if (p->follows) follow(m, p);
   const bool by_tables = (compensation_of_position >> motor & 1u) != 0u;
   if (by_tables || p->backlash_rate != 0) /* else it is a user's */
@@ -195,4 +161,4 @@ void desired_position_with_extras(uint32_t motor) {
   m->commanded = wanted;
 }
 
-bool desired_position_backlash_is_down(uint32_t motor) { return paths[motor].down; }
+bool desired_position_backlash_is_down(uint32_t motor) { return desired_paths[motor].down; }

@@ -22,8 +22,6 @@ static inline void desired_position_servo(uint32_t motor) { /* 0..31, servo task
   m->desired_step = step == (int32_t)step ? (int32_t)step : step > 0 ? INT32_MAX : INT32_MIN;
 }
 void desired_position_pass(void); /* background: backlash may move on by Ixx85 */
-/* 0..31, servo task held off: the trajectory is set so that the motor is commanded to be where it is. */
-void desired_position_take_actual(uint32_t motor);
 /* 0..31, servo task held off, or in it: positions are counted from elsewhere, the trajectory is `by` more. A loop that
  * is closed is not sent elsewhere by its tables: they give what is theirs at `place` of trajectory and master, and its
  * other positions are more by that, too. */

@@ -4,7 +4,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/commutation.h"
 #include "firmware/motion/conversion_table.h"
-#include "firmware/motion/desired_position.h"
+#include "firmware/motion/desired_path.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_flags.h"
@@ -53,7 +53,7 @@ bool motor_close(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
   const bool there = is_still_there(motor);
   if (there) {
-    desired_position_take_actual(motor);
+    desired_path_take_actual(motor);
     position_loop_restart(motor);
     enable(motor, LOOP_CLOSED);
   }

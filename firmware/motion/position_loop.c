@@ -9,7 +9,7 @@
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/compensation.h"
-#include "firmware/motion/desired_position.h"
+#include "firmware/motion/desired_path.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/notch.h"
@@ -274,7 +274,7 @@ void position_loop_show(uint32_t motor) {
 
 /* Of a killed motor commanded and actual position are the same, and there are 32. */
 static __attribute__((noinline)) void run_killed(uint32_t motor, struct motor* m, struct loop* l) {
-  desired_position_take_actual(motor);
+  desired_path_take_actual(motor);
   m->output = 0;
   l->integral = l->step = l->filtered = 0; /* shown so while it is open */
   const hal_place words = words_of(motor);
@@ -288,7 +288,7 @@ static __attribute__((noinline)) void run_other(uint32_t motor, struct motor* m,
   if (m->loop == LOOP_CLOSED) {
     close_loop(motor, m, l);
   } else {
-    desired_position_take_actual(motor);
+    desired_path_take_actual(motor);
     m->output = m->open_output;
     l->integral = l->step = l->filtered = 0; /* shown so while it is open */
   }
