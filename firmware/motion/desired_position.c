@@ -77,7 +77,10 @@ void desired_position_shift(uint32_t motor, int64_t by, int64_t place) {
   m->actual += all;
   desired_paths[motor].turning += by;
   average_velocity_shift(motor, all);
-  if (m->loop != LOOP_CLOSED && (compensation_of_position >> motor & 1u) != 0u) desired_path_take_actual(motor);
+  if (m->loop == LOOP_CLOSED || (compensation_of_position >> motor & 1u) == 0u) return;
+  m->trajectory = m->actual - m->master + m->held_back;
+  desired_path_take_actual(motor);
+  desired_path_take_actual(motor); /* what a table by the desired position adds is no part of that */
 }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */

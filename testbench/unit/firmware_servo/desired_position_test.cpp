@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "testbench/unit/firmware_platform/controller.h"
 
@@ -406,19 +407,35 @@ TEST_F(DesiredPosition, HmzMovesNoMotorWithATable) {
   }
 }
 
-// Of an open loop the actual position is 0, and its table knows that at once.
+// Of an open loop the actual position is 0, and its table knows that at once: it adds nothing there, by the desired
+// position neither. At 250 that one adds 4 % of what is left: 250/1.04.
 TEST_F(DesiredPosition, HmzOfAKilledMotorWithATable) {
-  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,1000"), "");
-  ASSERT_EQ(c_.line("160 -80 48 16"), "");
-  c_.line("I51=1");
-  *hal_x(0x10F0) = 250 * 32;
-  c_.servo(2);
-  ASSERT_EQ(c_.line("#1P"), "240");
-  ASSERT_EQ(c_.line("#1HMZ"), "");
-  EXPECT_EQ(motors[0].compensation, 0);
-  ASSERT_EQ(c_.line("#1J="), "");
-  c_.servo(100);
-  EXPECT_EQ(motors[0].commanded, 0) << "where it was before it was jogged";
+  const std::pair<std::string, double> sources[] = {{"#1", 240.0}, {"#1D", 250 / 1.04}};
+  for (const auto& [source, there] : sources)
+    for (const std::string command : {"#1HMZ", "#1$*"}) {
+      SCOPED_TRACE(source + " " + command);
+      motor_kill(0);
+      ASSERT_EQ(c_.line("I51=0 #1 DEFINE COMP 4," + source + ",#1,1000"), "");
+      ASSERT_EQ(c_.line("160 -80 48 16"), "");
+      *hal_x(0x10F0) = 0;
+      c_.servo(2);
+      ASSERT_EQ(c_.line("#1$*"), "");
+      c_.servo(2);
+      c_.line("I51=1");
+      *hal_x(0x10F0) = 250 * 32;
+      c_.servo(20);
+      ASSERT_NEAR(std::stod(c_.line("#1P")), there, 1 / 16.0);
+      ASSERT_EQ(c_.line(command), "");
+      EXPECT_EQ(motors[0].compensation, 0);
+      EXPECT_EQ(c_.line("#1P"), "0");
+      c_.servo(1);
+      EXPECT_EQ(c_.line("#1P"), "0");
+      ASSERT_EQ(c_.line("#1J="), "");
+      c_.servo(100);
+      EXPECT_EQ(motors[0].commanded, 0) << "where it was before it was jogged";
+      motor_kill(0);
+      ASSERT_EQ(c_.line("#1 DELETE COMP"), "");
+    }
 }
 
 // Entries are of the target's counts, the span of the source's; Ixx08 of either may change.
