@@ -214,8 +214,10 @@ static void match(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   s->failure = RUN_TIME_NONE;
   const bool found = system_motors_match(cs);
-  if (!found || s->match_failed) s->error = s->failure;
-  s->match_failed = !found;
+  if (s->error == RUN_TIME_NONE || s->match_failed) {
+    s->error = s->failure;
+    s->match_failed = !found;
+  }
   s->failure = RUN_TIME_NONE;
   s->matching = false;
 }

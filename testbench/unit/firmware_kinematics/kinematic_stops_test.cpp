@@ -94,32 +94,37 @@ TEST_F(KinematicStops, AForwardProgramThatNeverEnds) {
   EXPECT_FALSE(run_is_running(0));
 }
 
-// One that succeeds takes back what another has said, but not why a program was stopped.
+// What stopped a program stays whatever a PMATCH finds; of its own one takes back what another has said.
 TEST_F(KinematicStops, PmatchLeavesTheErrorOfAProgram) {
   fit_arm();
-  store({"CALL99"});
-  ASSERT_EQ(host("&1B1R"), "");
-  platform::servo_ticks(30);
-  ASSERT_EQ(cs().error, RUN_TIME_PROGRAM);
-  ASSERT_EQ(host("&1PMATCH"), "");
-  platform::servo_ticks(600);
-  EXPECT_EQ(cs().error, RUN_TIME_PROGRAM);
-  for (const bool fails : {true, false}) {
+  const auto match = [&](bool fails) {
     program("FORWARD", fails ? Lines{"Q7=1/0", "WHILE(1=1)", "ENDWHILE"} : Lines{"Q7=1"});
     ASSERT_EQ(host("&1PMATCH"), "");
     platform::servo_ticks(600);
+  };
+  const auto start = [&] {
+    program("FORWARD", {"Q7=1"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(600);
+  };
+  store({"CALL99"});
+  start();
+  ASSERT_EQ(cs().error, RUN_TIME_PROGRAM);
+  for (const bool fails : {false, true, false, true, true, false}) {
+    match(fails);
+    EXPECT_EQ(cs().error, RUN_TIME_PROGRAM) << fails;
+  }
+  store({"P1=1"});
+  start();
+  EXPECT_EQ(cs().error, RUN_TIME_NONE) << "the next start takes it back";
+  for (const bool fails : {true, false, true}) {
+    match(fails);
     EXPECT_EQ(cs().error, fails ? RUN_TIME_KINEMATIC : RUN_TIME_NONE);
   }
   store({"CALL99"});
-  program("FORWARD", {"WHILE(1=1)", "ENDWHILE"});
-  ASSERT_EQ(host("&1PMATCH"), "");
-  platform::servo_ticks(600);
-  program("FORWARD", {"Q7=1"});
-  ASSERT_EQ(host("&1B1R"), "");
-  platform::servo_ticks(600);
+  start();
   ASSERT_EQ(cs().error, RUN_TIME_PROGRAM);
-  ASSERT_EQ(host("&1PMATCH"), "");
-  platform::servo_ticks(600);
+  match(false);
   EXPECT_EQ(cs().error, RUN_TIME_PROGRAM) << "a start lies between them";
 }
 
