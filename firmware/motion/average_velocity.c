@@ -9,7 +9,7 @@
 
 enum { SAMPLES = 16, LARGEST_SHIFT = 62 };
 
-static struct { int64_t at[SAMPLES], way; } averages[MOTORS];
+static struct { int64_t at[SAMPLES], way, origin; /* of `at`, as positions are counted now */ } averages[MOTORS];
 static uint32_t next, turn, turns; /* the sample, the first motor of the interrupt, interrupts of the sample */
 
 void average_velocity_initialize(void) {
@@ -20,7 +20,7 @@ void average_velocity_initialize(void) {
 static __attribute__((noinline)) void sample(uint32_t motor) {
   for (; motor < MOTORS && motors_active >> motor != 0u; motor += turns) {
     if ((motors_active >> motor & 1u) == 0u) continue;
-    const int64_t actual = motors[motor].actual;
+    const int64_t actual = motors[motor].actual - averages[motor].origin;
     averages[motor].way = actual - averages[motor].at[next];
     averages[motor].at[next] = actual;
   }
@@ -38,13 +38,11 @@ void average_velocity_servo(void) {
   if (first < MOTORS && motors_active >> first != 0u) sample(first);
 }
 
-void average_velocity_shift(uint32_t motor, int64_t by) {
-  for (uint32_t i = 0; i < SAMPLES; ++i) averages[motor].at[i] += by;
-}
+void average_velocity_shift(uint32_t motor, int64_t by) { averages[motor].origin += by; }
 
 void average_velocity_restart(uint32_t motor) {
   for (uint32_t i = 0; i < SAMPLES; ++i) averages[motor].at[i] = motors[motor].actual;
-  averages[motor].way = 0;
+  averages[motor].way = averages[motor].origin = 0;
 }
 
 /* Samples of the old distance and of the new one are no way of sixteen, nor is what is left of a round. */

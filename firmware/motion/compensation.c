@@ -35,6 +35,7 @@ static struct set {
 } sets[2];
 static const struct set* present; /* the servo task's */
 static struct rework rework;
+static volatile uint32_t changes;
 static int64_t given[MOTORS]; /* S: what a motor's position has of its tables */
 
 uint32_t compensation_of_position, compensation_of_torque; /* the first: COMP */
@@ -81,6 +82,7 @@ static void change(void) {
     leave((uint32_t)__builtin_ctz(left));
   const uint32_t state = hal_mask_servo();
   present = set;
+  changes++;
   compensation_of_position = set->of_position;
   compensation_of_torque = set->of_torque;
   hal_unmask(state);
@@ -126,24 +128,39 @@ static int64_t sum(enum region_kind kind, uint32_t motor) {
   return all;
 }
 
-/* Of COMP tables, its own as if it were commanded to be at `place` and had gone there with `corrected`. */
-static int64_t sum_there(uint32_t motor, int64_t place, int64_t corrected) {
+static int64_t position_there(const struct table* t, uint32_t motor, bool closed, int64_t place, int64_t corrected) {
+  if (t->source != motor) return position_of(t);
+  if (t->of_desired) return closed ? place : place - corrected;
+  return closed ? place + corrected : place;
+}
+
+/* Of COMP tables, with `corrected` between what it is commanded and where it is. Tables may change meanwhile: a list is
+ * gone along for as many as there can be. */
+static int64_t sum_there(uint32_t motor, bool closed, int64_t place, int64_t corrected) {
   int64_t all = 0;
-  const struct table* tables = present->tables[REGION_COMP];
-  for (uint32_t i = present->first[REGION_COMP][motor], left = MOTORS; i != NONE && left != 0u; --left) {
-    const struct table* t = &tables[i];
-    all += value_at(t, t->source != motor ? position_of(t) : t->of_desired ? place : place + corrected);
-    i = t->next;
+  for (uint32_t i = MOTORS, left = MOTORS + 1u; i != NONE && left != 0u; --left) {
+    const uint32_t state = hal_mask_servo();
+    const struct table* tables = present->tables[REGION_COMP];
+    i = i == MOTORS ? present->first[REGION_COMP][motor] : tables[i].next;
+    if (i != NONE) all += value_at(&tables[i], position_there(&tables[i], motor, closed, place, corrected));
+    hal_unmask(state);
   }
   return all;
 }
 
-/* The second look is for tables by the actual position, which has the correction in it. */
-int64_t compensation_anew(uint32_t motor, int64_t place) {
+/* The second look is for tables by the position that has the correction in it, or has it not any more. */
+int64_t compensation_there(uint32_t motor, bool closed, int64_t place) {
+  if ((compensation_of_position >> motor & 1u) == 0u) return 0;
+  return sum_there(motor, closed, place, sum_there(motor, closed, place, 0));
+}
+
+uint32_t compensation_changes(void) { return changes; }
+
+int64_t compensation_exchange(uint32_t motor, int64_t sum) {
   if ((compensation_of_position >> motor & 1u) == 0u) return 0;
   const int64_t before = given[motor];
-  given[motor] = sum_there(motor, place, sum_there(motor, place, 0));
-  return given[motor] - before;
+  given[motor] = sum;
+  return sum - before;
 }
 
 int64_t compensation_position(uint32_t motor) {

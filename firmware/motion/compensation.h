@@ -3,6 +3,7 @@
 #ifndef FIRMWARE_MOTION_COMPENSATION_H
 #define FIRMWARE_MOTION_COMPENSATION_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 void compensation_initialize(void);
@@ -15,8 +16,11 @@ extern uint32_t compensation_of_position, compensation_of_torque;
 int64_t compensation_position(uint32_t motor);               /* position: sum of its COMP tables */
 int64_t compensation_backlash(uint32_t motor);               /* position: of its BLCOMP tables */
 int64_t compensation_torque(uint32_t motor, int64_t output); /* to be added to `output` */
-/* Servo task held off, or in it: positions are counted from elsewhere, trajectory and master are at `place` then. How
- * much more its COMP tables add there than they have added so far. */
-int64_t compensation_anew(uint32_t motor, int64_t place);
+/* 0..31, any task: what its COMP tables will add when positions are counted so that it is at `place`, trajectory and
+ * master of a loop that is closed, else its actual position. The servo task is held off for a table at a time. */
+int64_t compensation_there(uint32_t motor, bool closed, int64_t place);
+uint32_t compensation_changes(void); /* another number after any change of tables */
+/* Servo task held off, or in it: they add `sum` from now on. How much more that is than so far; 0 where it has none. */
+int64_t compensation_exchange(uint32_t motor, int64_t sum);
 
 #endif

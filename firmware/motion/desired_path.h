@@ -29,5 +29,16 @@ extern struct desired_path desired_paths[MOTORS];
 
 /* 0..31, servo task held off: the trajectory is set so that the motor is commanded to be where it is. */
 void desired_path_take_actual(uint32_t motor);
+void desired_path_stand(uint32_t motor); /* the same, its tables add what they have added */
+
+/* 0..31, any task: what its tables will add when positions are counted so that it is at `position`, as commands count.
+ */
+int64_t desired_path_corrections(uint32_t motor, int64_t position);
+/* 0..31, background and real-time task: the same, with the servo task held off from then on, so that it is true until
+ * hal_unmask(). */
+uint32_t desired_path_hold(uint32_t motor, int64_t position, int64_t* corrections);
+/* 0..31, background and real-time task, a loop that is not closed: what its tables add where it is, although no servo
+ * interrupt has seen them yet. */
+void desired_path_look_at_tables(uint32_t motor);
 
 #endif

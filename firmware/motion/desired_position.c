@@ -67,20 +67,24 @@ void desired_position_motor_changed(uint32_t motor) {
   hal_unmask(state);
 }
 
-void desired_position_shift(uint32_t motor, int64_t by, int64_t place) {
+void desired_position_shift(uint32_t motor, int64_t by, int64_t corrections) {
   struct motor* m = &motors[motor];
-  const int64_t corrected = m->loop == LOOP_CLOSED ? compensation_anew(motor, place) : 0, all = by + corrected;
-  m->trajectory += by;
+  FIXED_IN_REGISTER(m);
+  const int64_t corrected = compensation_exchange(motor, corrections);
+  int64_t all = by;
   m->compensation += corrected;
-  m->commanded += all;
-  m->closed_at += all;
-  m->actual += all;
-  desired_paths[motor].turning += by;
+  if (m->loop == LOOP_CLOSED) {
+    all += corrected;
+    m->trajectory += by;
+    m->commanded += all;
+    m->closed_at += all;
+    m->actual += all;
+    desired_paths[motor].turning += by;
+  } else {
+    m->actual += all;
+    desired_path_stand(motor);
+  }
   average_velocity_shift(motor, all);
-  if (m->loop == LOOP_CLOSED || (compensation_of_position >> motor & 1u) == 0u) return;
-  m->trajectory = m->actual - m->master + m->held_back;
-  desired_path_take_actual(motor);
-  desired_path_take_actual(motor); /* what a table by the desired position adds is no part of that */
 }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */

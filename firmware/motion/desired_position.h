@@ -23,9 +23,9 @@ static inline void desired_position_servo(uint32_t motor) { /* 0..31, servo task
 }
 void desired_position_pass(void); /* background: backlash may move on by Ixx85 */
 /* 0..31, servo task held off, or in it: positions are counted from elsewhere, the trajectory is `by` more. A loop that
- * is closed is not sent elsewhere by its tables: they give what is theirs at `place` of trajectory and master, and its
- * other positions are more by that, too. */
-void desired_position_shift(uint32_t motor, int64_t by, int64_t place);
+ * is closed is not sent elsewhere by its tables: its other positions are more by that, too, by which `corrections`,
+ * what they add there (desired_path_corrections), are more than what they have added. */
+void desired_position_shift(uint32_t motor, int64_t by, int64_t corrections);
 bool desired_position_backlash_is_down(uint32_t motor); /* status word 2, bit 4 */
 
 #endif

@@ -1,8 +1,10 @@
 #include "firmware/motion/homing.h"
 
 #include "firmware/hal/hal.h"
+#include "firmware/motion/desired_path.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
 
 #define OFFSET_UNITS 16.0 /* of Ixx26 in a count */
@@ -14,9 +16,11 @@ bool homing_begin(uint32_t motor, uint32_t together) {
 }
 
 void homing_here(uint32_t motor) {
-  const uint32_t state = hal_mask_servo();
   const struct motor* m = &motors[motor];
-  jog_count_from(motor, m->loop == LOOP_CLOSED ? m->trajectory + motor_followed(motor) : m->actual, 0);
+  int64_t corrections;
+  const uint32_t state = desired_path_hold(motor, 0, &corrections);
+  jog_count_from(motor, m->loop == LOOP_CLOSED ? m->trajectory + motor_followed(motor) : m->actual, corrections);
   motors[motor].status.home_complete = true;
   hal_unmask(state);
+  position_loop_show(motor); /* who asks behind `HMZ` is told 0 */
 }

@@ -8,7 +8,6 @@
 #include "firmware/motion/desired_position.h"
 #include "firmware/motion/jog_state.h"
 #include "firmware/motion/motor.h"
-#include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
 
 #define FASTEST 2147483648.0 /* 1/(32 Ixx08) counts a ms */
@@ -68,15 +67,17 @@ static bool stops_already(uint32_t motor) {
 
 static bool goes_into_limit(uint32_t motor, const struct jog_motion* request) {
   if (request->aim != AIM_SPEED && request->aim != AIM_TARGET) return false;
+  const uint32_t state = hal_mask_servo();
   const int64_t at = motors[motor].trajectory;
+  hal_unmask(state);
   const bool up = request->aim == AIM_SPEED ? request->speed > 0.0 : request->target > at;
   const bool down = request->aim == AIM_SPEED ? request->speed < 0.0 : request->target < at;
   return (up || down) && jog_hooks.is_in_limit(motor, up, request->homes);
 }
 
 /* Further into a limit that the motor stands in: a command is taken and moves nothing, a program ends. */
-static void post_out_of_limit(uint32_t motor, const struct jog_motion* request) {
-  if (!goes_into_limit(motor, request)) {
+static void post_out_of_limit(uint32_t motor, const struct jog_motion* request, bool into_limit) {
+  if (!into_limit) {
     jog_post(motor, request);
     return;
   }
@@ -86,13 +87,14 @@ static void post_out_of_limit(uint32_t motor, const struct jog_motion* request) 
 
 static bool ask(uint32_t motor, const struct jog_motion* request) {
   const int64_t delay = (int64_t)i_integer(i_motor(motor + 1u, IXX92_JOG_CALCULATION_TIME)) << TRAJECTORY_FRACTION_BITS;
+  const bool into_limit = goes_into_limit(motor, request);
   const uint32_t state = hal_mask_servo();
   const bool closed = motors[motor].loop == LOOP_CLOSED;
   if (closed) {
     jogs[motor].delay = request->aim == AIM_RAMP ? 0 : delay;
     if (!request->by_program && !request->homes && request->aim != AIM_RAMP) leave_position(motor);
     if (request->aim != AIM_RAMP) {
-      post_out_of_limit(motor, request);
+      post_out_of_limit(motor, request, into_limit);
     } else if (!stops_already(motor)) {
       jog_post(motor, request);
       hal_request_real_time(); /* what stops a motor does not wait for its turn */
@@ -252,16 +254,16 @@ void jog_make_whole(uint32_t motor) {
   hal_unmask(state);
 }
 
-void jog_count_from(uint32_t motor, int64_t position, int64_t place) {
+void jog_count_from(uint32_t motor, int64_t position, int64_t corrections) {
   struct jog* j = &jogs[motor];
-  desired_position_shift(motor, -position, place - motor_followed(motor) + motors[motor].master);
-  position_loop_show(motor); /* who asks behind `HMZ` is told 0 */
+  struct motor* m = &motors[motor];
+  desired_position_shift(motor, -position, corrections);
+  FIXED_IN_REGISTER(j);
+  FIXED_IN_REGISTER(m);
   for (uint32_t path = 0; path < 2u; path++) j->paths[path].shift -= position;
   j->request.target -= position; /* a place: it stays where it is */
   j->requests++;                 /* what is being planned is about the old positions */
-  motors[motor].of_system -= position;
-  j->before =
-      motor_followed(motor) +
-      (motors[motor].loop == LOOP_CLOSED ? motors[motor].trajectory : jog_trajectory_at(motor, motors[motor].actual));
+  m->of_system -= position;
+  j->before = motor_followed(motor) + m->trajectory;
   j->away = true;
 }

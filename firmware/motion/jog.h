@@ -58,8 +58,8 @@ void jog_make_whole(uint32_t motor);   /* J!: a motor that stands is commanded t
 int64_t jog_actual(uint32_t motor);    /* the trajectory position that has it where it is */
 /* The trajectory position that has the motor at `actual`. Servo task held off, or in it. */
 int64_t jog_trajectory_at(uint32_t motor, int64_t actual);
-/* All positions are counted from the present `position`. Of a loop that is closed its tables give what they give at
- * `place`, as it is counted then. Servo task held off, or in it. */
-void jog_count_from(uint32_t motor, int64_t position, int64_t place);
+/* All positions are counted from the present `position`; `corrections` as desired_position_shift. Servo task held off,
+ * or in it. */
+void jog_count_from(uint32_t motor, int64_t position, int64_t corrections);
 
 #endif

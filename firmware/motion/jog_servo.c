@@ -4,9 +4,11 @@
 #include <stdbool.h>
 
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/desired_path.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/jog_state.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/position_loop.h"
 
 /* Onto another time base no faster than the system itself may change: what is not held follows it at once. */
 static int32_t approach(int32_t present, int32_t target, int32_t slew) {
@@ -61,7 +63,9 @@ static void found(uint32_t motor, int64_t position) {
   then.target = jog_trajectory_at(motor, position) + then.beyond;
   if (homes) {
     const int64_t followed = motor_followed(motor);
-    jog_count_from(motor, then.target + followed, -then.beyond); /* where the trigger was */
+    /* where the trigger was */
+    jog_count_from(motor, then.target + followed, desired_path_corrections(motor, -then.beyond));
+    position_loop_show(motor);
     then.target = -followed;
     j->before = 0;
     status->home_complete = true;

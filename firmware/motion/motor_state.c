@@ -50,10 +50,11 @@ bool motor_close(uint32_t motor) {
   if (motors[motor].loop == LOOP_CLOSED) return true;
   if (!motor_may_close(motor)) return false;
   forget(motor);
+  desired_path_look_at_tables(motor);
   const uint32_t state = hal_mask_servo();
   const bool there = is_still_there(motor);
   if (there) {
-    desired_path_take_actual(motor);
+    desired_path_stand(motor);
     position_loop_restart(motor);
     enable(motor, LOOP_CLOSED);
   }

@@ -269,7 +269,9 @@ static inline bool close_simple_loop(uint32_t motor, struct motor* m, struct loo
 }
 
 void position_loop_show(uint32_t motor) {
+  const uint32_t state = hal_mask_servo();
   if ((motors_active >> motor & 1u) != 0u) publish(motor, &motors[motor]);
+  hal_unmask(state);
 }
 
 /* Of a killed motor commanded and actual position are the same, and there are 32. */

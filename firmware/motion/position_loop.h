@@ -14,7 +14,7 @@ void position_loop_restart(uint32_t motor);       /* 0..31, servo task held off:
  * counter is cleared. */
 void position_loop_forget_movement(uint32_t motor);
 
-void position_loop_show(uint32_t motor); /* the same: its registers are as its positions are now */
+void position_loop_show(uint32_t motor); /* any task: its registers are as its positions are now */
 
 /* 0..31, any task: what registers and protection show, and captures go by. */
 uint32_t position_loop_reading(uint32_t motor); /* word of Ixx03 that the actual position was last made of */

@@ -3,6 +3,7 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/desired_path.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
@@ -48,36 +49,42 @@ static int64_t sensor(uint32_t motor) {
   return (format & FORMAT_SIGNED) != 0u ? (int64_t)(value << unused) >> unused : (int64_t)(value << unused >> unused);
 }
 
-/* The channel that Ixx25 names, if it is one of a servo IC. The phase of a commutated motor is counted by it. */
-static void zero_counter(uint32_t motor) {
+/* The IC of the channel that Ixx25 names, GATE_IC_MACRO: it is none of a servo IC, or one by which the phase of a
+ * commutated motor is counted. */
+static unsigned counter_ic(uint32_t motor, uint32_t* channel) {
   const uint32_t address = variable(motor, IXX25_FLAG_ADDRESS);
-  if ((variable(motor, IXX24_FLAG_MODE) & FLAGS_OVER_RING) != 0u) return;
-  if ((variable(motor, IXX97_CAPTURE_MODE) & SOFTWARE_CAPTURE) != 0u) return;
-  if ((variable(motor, IXX01_COMMUTATION_ENABLE) & COMMUTATED) != 0u) return;
+  if ((variable(motor, IXX24_FLAG_MODE) & FLAGS_OVER_RING) != 0u) return GATE_IC_MACRO;
+  if ((variable(motor, IXX97_CAPTURE_MODE) & SOFTWARE_CAPTURE) != 0u) return GATE_IC_MACRO;
+  if ((variable(motor, IXX01_COMMUTATION_ENABLE) & COMMUTATED) != 0u) return GATE_IC_MACRO;
   for (unsigned ic = 0; ic < GATE_IC_MACRO; ic++) {
     const uint32_t offset = address - gate_ic_base(ic);
-    if (!gate_ic_present(ic) || offset >= CHANNEL_WORDS * GATE_IC_CHANNELS) continue;
-    gate_ic_zero_counter(ic, offset / CHANNEL_WORDS);
+    *channel = offset / CHANNEL_WORDS;
+    if (gate_ic_present(ic) && *channel < GATE_IC_CHANNELS) return ic;
   }
+  return GATE_IC_MACRO;
 }
 
 static void set_position(uint32_t motor, int64_t counts) {
   const double offset = i_variable_read(i_motor(motor + 1u, IXX26_HOME_OFFSET)) / OFFSET_UNITS;
   const bool absolute = variable(motor, IXX10_POWER_ON_ADDRESS) != 0u;
   const int64_t position = absolute ? motor_position_of(motor, (double)counts - offset) : 0;
-  const uint32_t state = hal_mask_servo();
-  jog_count_from(motor, motors[motor].actual - position, position);
+  int64_t corrections;
+  const uint32_t state = desired_path_hold(motor, position, &corrections);
+  jog_count_from(motor, motors[motor].actual - position, corrections);
   motors[motor].bias = 0;
   motors[motor].status.home_complete = absolute;
   hal_unmask(state);
+  position_loop_show(motor);
 }
 
 bool power_on_position_read(uint32_t motor) {
   if (!is_built(motor)) return false;
   motor_kill(motor);
   const int64_t counts = variable(motor, IXX10_POWER_ON_ADDRESS) != 0u ? sensor(motor) : 0;
+  uint32_t channel = 0;
+  const unsigned ic = counter_ic(motor, &channel);
   const uint32_t state = hal_mask_servo();
-  zero_counter(motor);
+  if (ic < GATE_IC_MACRO) gate_ic_zero_counter(ic, channel);
   position_loop_forget_movement(motor);
   hal_unmask(state);
   set_position(motor, counts);

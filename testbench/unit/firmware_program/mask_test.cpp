@@ -201,6 +201,32 @@ TEST(Mask, LongestSectionThatHoldsATaskOff) {
   }
 }
 
+// All tables there can be are of motor 1: where it counts from is changed between two servo interrupts all the same.
+TEST(Mask, ZerosOfAMotorWithEveryTable) {
+  ImageBoard board(firmware_image(), 0x3);
+  ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+  ASSERT_EQ(board.send("I111=0 I112=0 I124=$120001 I192=1\r", 30.0), "\x06") << "a motor that nothing turns";
+  for (int table = 32; table > 0; --table) {
+    const std::string source = table % 4 == 0 ? "#2" : table % 2 == 0 ? "#1D" : "#1";
+    const std::string line = "#" + std::to_string(table) + "DEFINE COMP 4," + source + ",#1,1000";
+    ASSERT_EQ(board.send(line + "\r", 30.0), "\x06") << line;
+    ASSERT_EQ(board.send("16 -32 48 -64\r", 30.0), "\x06");
+  }
+  MaskWatch watch(board, firmware_image());
+  for (const char* line : {"I51=1", "#1HMZ", "J/", "HMZ", "J=100", "HMZ", "I106=3", "HMZ", "K", "HMZ", "$*",
+                           "I60=0 I61=0 J/", "HMZ", "K", "OPEN PROG 1 CLEAR HOMEZ1 CLOSE &1B1R", "I51=0"}) {
+    EXPECT_EQ(board.send(std::string(line) + "\r", 30.0), "\x06") << line;
+    board.run_ms(5.0);
+  }
+  for (const auto& [key, line] : watch.table())
+    std::printf("%5d cycles %-10s %s\n", static_cast<int>(-key.first), line.c_str(), key.second.c_str());
+  for (const CpuInterrupt line : {kIrqServo, kIrqRealTime}) {
+    const auto worst = watch.worst(line);
+    EXPECT_LE(worst.cycles, kLimit) << worst.function;
+    EXPECT_GT(worst.sections, 100u) << "hardly any section seen";
+  }
+}
+
 // Programs read axis definitions at their addresses (docs/variables.md, Live words), and preempt who changes them.
 TEST(Mask, AxisDefinitionsChangeWhileTheRealTimeTaskIsHeldOff) {
   ImageBoard board(firmware_image(), 0x3);

@@ -438,6 +438,25 @@ TEST_F(DesiredPosition, HmzOfAKilledMotorWithATable) {
     }
 }
 
+// Before any servo interrupt has seen the table, at 250: by the actual position 10, else 250 (1 - 1/1.04).
+TEST_F(DesiredPosition, ALoopIsClosedWithWhatItsTableAddsThere) {
+  *hal_x(0x10F0) = 250 * 32;
+  const std::pair<std::string, double> sources[] = {{"#1", 10.0}, {"#1D", 250 - 250 / 1.04}};
+  for (const auto& [source, added] : sources) {
+    SCOPED_TRACE(source);
+    motor_kill(0);
+    c_.servo(2);
+    ASSERT_EQ(c_.line("#1 DEFINE COMP 4," + source + ",#1,1000"), "");
+    ASSERT_EQ(c_.line("160 -80 48 16 I51=1"), "");
+    close();
+    EXPECT_NEAR(static_cast<double>(motors[0].compensation) / kCount, added, 1 / 32.0);
+    EXPECT_EQ(motors[0].commanded, 250 * kCount);
+    EXPECT_EQ(motors[0].trajectory + motors[0].compensation, 250 * kCount);
+    ASSERT_EQ(c_.line("I51=0 #1 DELETE COMP"), "");
+    EXPECT_EQ(motors[0].compensation, 0);
+  }
+}
+
 // Entries are of the target's counts, the span of the source's; Ixx08 of either may change.
 TEST_F(DesiredPosition, TablesGoByTheScalesOfBothMotors) {
   ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
