@@ -19,6 +19,7 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/commutation.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
@@ -187,11 +188,12 @@ static void finish(uint32_t motor, struct search* s) {
   hal_unmask(state);
 }
 
-static void look_for_a_limit(uint32_t motor, struct search* s) {
+/* A limit, or nobody commutates the motor any more. */
+static void look_for_an_end(uint32_t motor, struct search* s) {
   const struct motor_findings* found = &motors[motor].found;
-  const bool limit = found->positive_limit || found->negative_limit;
+  const bool ends = found->positive_limit || found->negative_limit || !commutation_is_used(motor);
   const uint32_t state = hal_mask_servo();
-  if (s->kind != SEARCH_NONE && limit) {
+  if (s->kind != SEARCH_NONE && ends) {
     s->kind = SEARCH_NONE;
     s->result = RESULT_FAILED;
   }
@@ -199,10 +201,10 @@ static void look_for_a_limit(uint32_t motor, struct search* s) {
 }
 
 void phasing_pass(void) {
-  for (uint32_t left = phase_task_work; left != 0u; left &= left - 1u) { /* those that are commutated */
+  for (uint32_t left = phasing_searched; left != 0u; left &= left - 1u) {
     const uint32_t motor = (uint32_t)__builtin_ctz(left);
-    if (!phasing_is_searched(motor) || is_taken_over(motor, &searches[motor])) continue;
-    look_for_a_limit(motor, &searches[motor]);
+    if (is_taken_over(motor, &searches[motor])) continue;
+    look_for_an_end(motor, &searches[motor]);
     if (searches[motor].result != RESULT_NONE) finish(motor, &searches[motor]);
   }
 }

@@ -436,6 +436,24 @@ TEST_F(PhaseSearch, ALimitEndsTheSearchWithoutAReference) {
   }
 }
 
+// Nor is the motor kept from being enabled otherwise.
+TEST_F(PhaseSearch, EndsWhenTheMotorIsNotCommutatedAnyMore) {
+  for (const char* variable : {"I101=0", "I100=0"}) {
+    set("I100=1 I101=1");
+    plant::Motor motor = motor_at(100);
+    ASSERT_TRUE(phasing_begin(0)) << variable;
+    run(motor, 10);
+    ASSERT_TRUE(phasing_is_searched(0)) << variable;
+    set(variable);
+    run(motor, 1);
+    EXPECT_FALSE(phasing_is_searched(0)) << variable;
+    EXPECT_EQ(motors[0].loop, LOOP_KILLED) << variable;
+    set("I100=1 I101=0");
+    EXPECT_TRUE(motor_close(0)) << variable;
+    motor_kill(0);
+  }
+}
+
 TEST_F(PhaseSearch, IsMadeByACommand) {
   plant::Motor motor = motor_at(250);
   set_x(0x78001, counts(motor));
