@@ -308,18 +308,41 @@ bool system_motors_are_away(uint32_t cs) {
   return away;
 }
 
-/* A motor that is not of the system, while its program homes it. */
-static bool is_homed(uint32_t cs, uint32_t motor) {
+/* By a move of its own, RAPID or HOME. It begins before the servo task starts the move. */
+static bool moves_alone(uint32_t cs, uint32_t motor) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  const struct move* m = &s->moves[s->executing];
-  return s->active && m->kind == MOVE_OWN && (m->own >> motor & 1u) != 0 && jog_is_of_program(motor);
+  const uint32_t state = hal_mask_servo();
+  const struct move* m = s->active ? &s->moves[s->executing] : cs_next_move(s);
+  const bool alone = m != 0 && m->kind == MOVE_OWN && (m->own >> motor & 1u) != 0;
+  hal_unmask(state);
+  return alone;
+}
+
+uint32_t system_motor_mover(uint32_t motor) {
+  const struct axis_definition* d = &axis_definitions[motor];
+  if (d->assigned && moves_alone(d->cs, motor)) return d->cs;
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
+    if (moves_alone(cs, motor)) return cs;
+  return COORDINATE_SYSTEMS;
+}
+
+static bool is_moved_by(uint32_t cs, uint32_t motor) {
+  return jog_is_of_program(motor) && system_motor_mover(motor) == cs;
+}
+
+static void ramp(uint32_t motor) {
+  (void)jog_stop_at(motor, i_variable_read(i_motor_real(motor + 1u, IXX15_ABORT_DECELERATION)));
 }
 
 void system_motors_ramp(uint32_t cs) {
   time_base_stay(cs);
   for (uint32_t motor = 0; motor < MOTORS; motor++)
-    if ((axis_definitions[motor].assigned && axis_definitions[motor].cs == cs) || is_homed(cs, motor))
-      (void)jog_stop_at(motor, i_variable_read(i_motor_real(motor + 1u, IXX15_ABORT_DECELERATION)));
+    if ((axis_definitions[motor].assigned && axis_definitions[motor].cs == cs) || is_moved_by(cs, motor)) ramp(motor);
+}
+
+void system_motors_ramp_rest(uint32_t cs) {
+  for (uint32_t motor = 0; motor < MOTORS; motor++)
+    if (is_moved_by(cs, motor)) ramp(motor);
 }
 
 void system_motors_set_position(uint32_t cs, uint32_t axes, const double position[AXIS_COUNT]) {

@@ -49,7 +49,13 @@ bool system_motors_leave(
 bool system_motors_are_away(uint32_t cs); /* not where the program has left them */
 void system_motors_take(uint32_t cs);     /* the program goes on with them: they have been jogged and are back */
 
-void system_motors_ramp(uint32_t cs); /* an abort: those of closed loops leave its path, to rest at Ixx15. Any task */
+/* The system that moves a motor by RAPID or HOME, be the motor its own, another's or nobody's; COORDINATE_SYSTEMS:
+ * none. Of two it is that of the motor. Any task. */
+uint32_t system_motor_mover(uint32_t motor);
+/* An abort: those of closed loops leave its path, to rest at Ixx15, and so do others that it moves. Any task. */
+void system_motors_ramp(uint32_t cs);
+/* Behind it, real-time task held off: what that task has begun meanwhile. */
+void system_motors_ramp_rest(uint32_t cs);
 /* PSET, at rest: the axes in `axes` are at `position` from now on, by the bias of the motors. */
 void system_motors_set_position(uint32_t cs, uint32_t axes, const double position[AXIS_COUNT]);
 

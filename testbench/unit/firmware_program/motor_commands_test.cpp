@@ -8,6 +8,7 @@ extern "C" {
 #include "firmware/base/float48.h"
 #include "firmware/base/status.h"
 #include "firmware/command/control_characters.h"
+#include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
@@ -289,6 +290,44 @@ TEST_F(MotorStops, AbortStopsMotorsOfNoSystemThatItsProgramHomes) {
     EXPECT_EQ(step_of(1) == 0, searches);
     EXPECT_FALSE(jog_is_homing(1));
     EXPECT_FALSE(motors[1].status.home_complete);
+  }
+}
+
+// The motor has been asked to go before the servo interrupt with which the move begins.
+TEST_F(MotorStops, AbortStopsWhatItsProgramIsAboutToHome) {
+  ASSERT_EQ(host("I223=20 #1J/#2J/ &1E"), "");
+  run(300);
+  for (const char* line : {"OPEN PROG 1 CLEAR", "HOME2", "CLOSE", "&1B1R"}) ASSERT_EQ(host(line), "") << line;
+  for (int i = 0; i < 100 && !jog_is_moving(1); ++i) run(1);
+  ASSERT_TRUE(jog_is_moving(1) && !coordinate_systems[0].active);
+  ASSERT_EQ(host("&1A"), "");
+  run(150);
+  EXPECT_EQ(step_of(1), 0);
+  EXPECT_FALSE(jog_is_homing(1));
+}
+
+// A motor that another program homes has come to rest, so that its own may run meanwhile.
+TEST_F(MotorStops, AbortLeavesAMotorToItsOwnSystem) {
+  ASSERT_EQ(host("&2#2->X I123=20 I223=20 I222=20 #1J/#2J/ &1E"), "");
+  run(300);
+  for (const char* move : {"RAPID X100000", "HOME2"}) {
+    for (const char* line : {"&1 OPEN PROG 1 CLEAR", "HOME1,2", "CLOSE", "OPEN PROG 2 CLEAR", "INC", move, "CLOSE"})
+      ASSERT_EQ(host(line), "") << line;
+    ASSERT_EQ(host("&1B1R"), "");
+    run(200);
+    ASSERT_TRUE(jog_is_homing(0) && jog_is_homing(1));
+    ASSERT_EQ(host("#2J/"), "");
+    run(300);
+    ASSERT_EQ(host("&2B2R"), "");
+    run(200);
+    ASSERT_GT(step_of(1), 8);
+    ASSERT_EQ(host("&1A"), "");
+    run(300);
+    EXPECT_EQ(step_of(0), 0) << move;
+    EXPECT_GT(step_of(1), 8) << move;
+    ASSERT_EQ(host("&2A"), "");
+    run(300);
+    EXPECT_EQ(step_of(1), 0) << move;
   }
 }
 
