@@ -12,6 +12,7 @@
 #include "firmware/motion/overload.h"
 #include "firmware/motion/position_loop.h"
 #include "firmware/motion/system_findings.h"
+#include "firmware/motion/system_motors.h"
 #include "firmware/variables/i_variables.h"
 
 enum { PART_OF_COUNT = 16, LIMIT_KILLS = 1 << 8, DESIRED_LIMITS = 1 << 15, OTHERS_SHIFT = 21 }; /* bits of Ixx24 */
@@ -35,7 +36,8 @@ enum { FIRST_TURN = 0x11111111 };     /* motors that are looked at in the first 
 static uint32_t turn, urgent_watched; /* S: which it is; bit n: what is urgent about motor n is looked for */
 static volatile bool asked;           /* S sets, R clears: a pass does not wait for its turn */
 
-static volatile uint32_t gone;    /* bit n: a variable has killed motor n, its program is to end. V sets, R clears */
+static volatile uint32_t
+    ending; /* bit n: a variable has killed a motor of program n, or what follows. V, Q set, R clears */
 static volatile uint32_t refused; /* bit n: a program has asked for more of motor n, in a limit. Q sets, R clears */
 static volatile bool foreground;  /* I13, as the last pass has seen it */
 static volatile bool stands;      /* B */
@@ -44,7 +46,7 @@ void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
   foreground = stands = asked = false;
-  protection_watched = protection_always_watched = turn = urgent_watched = gone = refused = 0;
+  protection_watched = protection_always_watched = turn = urgent_watched = ending = refused = 0;
   system_findings_initialize();
 }
 
@@ -127,75 +129,79 @@ static bool is_of_system(uint32_t motor, uint32_t cs) {
   return axis_definitions[motor].assigned && axis_definitions[motor].cs == cs;
 }
 
-/* A program whose motor is dead does not run on. */
-static void kill(uint32_t motor) {
+static void abort_programs(uint32_t systems) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; ++cs)
+    if ((systems >> cs & 1u) != 0u) protection_hooks.abort(cs);
+}
+
+/* A program whose motor is dead does not run on: that of its coordinate system, and one that homes it. */
+static uint32_t systems_of(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
-  const bool was_on = motors[motor].loop != LOOP_KILLED;
+  const uint32_t moved = jog_is_of_program(motor) ? 1u << system_motor_mover(motor) : 0u;
+  return d->assigned ? moved | 1u << d->cs : moved;
+}
+
+static void kill(uint32_t motor) {
+  const uint32_t systems = motors[motor].loop != LOOP_KILLED ? systems_of(motor) : 0u;
   motor_kill(motor);
-  if (was_on && d->assigned) protection_hooks.abort(d->cs);
+  abort_programs(systems);
 }
 
 /* The motor is killed and others as Ixx24 says. All enables fall before programs are looked for. */
 static void trip(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
   const enum others others = guards[motor].others;
-  uint32_t systems = d->assigned ? 1u << d->cs : 0u;
+  uint32_t systems = systems_of(motor);
   motor_kill(motor);
   for (uint32_t other = 0; other < MOTORS; ++other) {
     if (others != OTHERS_ALL && !(others == OTHERS_OF_SYSTEM && d->assigned && is_of_system(other, d->cs))) continue;
-    if (motors[other].loop != LOOP_KILLED && axis_definitions[other].assigned)
-      systems |= 1u << axis_definitions[other].cs;
+    if (motors[other].loop != LOOP_KILLED) systems |= systems_of(other);
     motor_kill(other);
   }
-  for (uint32_t cs = 0; systems != 0u; ++cs, systems >>= 1)
-    if ((systems & 1u) != 0u) protection_hooks.abort(cs);
+  abort_programs(systems);
 }
 
-/* The writer of a variable may be the program itself, in the middle of a line. */
+/* The writer of a variable may be the program itself, in the middle of a line. Nobody begins to move it meanwhile. */
 void protection_kill(uint32_t motor) {
   if (motors[motor].loop == LOOP_KILLED) return;
+  const uint32_t held_off = hal_mask_real_time(), systems = systems_of(motor);
   motor_kill(motor);
   const uint32_t state = hal_mask_servo();
-  gone |= 1u << motor;
+  ending |= systems;
   hal_unmask(state);
+  hal_unmask(held_off);
 }
 
-void protection_begin(uint32_t of) {
-  gone &= ~of;
-  refused &= ~of;
+void protection_begin(uint32_t cs) {
+  ending &= ~(1u << cs);
+  refused &= ~axis_motors[cs];
 }
 
-static void end_program(uint32_t motor) {
-  const struct axis_definition* d = &axis_definitions[motor];
-  if (!d->assigned) return;
-  if (coordinate_systems[d->cs].running || coordinate_systems[d->cs].active) protection_hooks.abort(d->cs);
-}
+static bool goes_on(uint32_t cs) { return coordinate_systems[cs].running || coordinate_systems[cs].active; }
 
-/* Of motors that are gone, and that stand in a limit and were to go on. */
 static void end_programs(void) {
-  const uint32_t state = hal_mask_servo(), in_limit = refused, of = gone | in_limit;
-  gone = refused = 0;
+  const uint32_t state = hal_mask_servo(), systems = ending;
+  for (uint32_t left = refused; left != 0u; left &= left - 1u) motors[__builtin_ctz(left)].found.on_limit = true;
+  ending = refused = 0;
   hal_unmask(state);
-  for (uint32_t motor = 0, left = of; left != 0u; ++motor, left >>= 1) {
-    if ((left & 1u) == 0u) continue;
-    if ((in_limit >> motor & 1u) != 0u) motors[motor].found.on_limit = true;
-    end_program(motor);
-  }
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; ++cs)
+    if ((systems >> cs & 1u) != 0u && goes_on(cs)) protection_hooks.abort(cs);
 }
 
-/* A program moves it: on the path, or by itself (RAPID, HOME). */
-static bool is_of_program(uint32_t motor) {
+/* A program moves it: on the path, or by itself (RAPID, HOME). What somebody has jogged meanwhile only its own keeps.
+ */
+static uint32_t program_of(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
-  if (!d->assigned) return false;
-  const struct coordinate_system* s = &coordinate_systems[d->cs];
-  const struct move* m = &s->moves[s->executing];
-  return motors[motor].path == PATH_SYSTEM || (s->active && m->kind == MOVE_OWN && (m->own >> motor & 1u) != 0u);
+  if (d->assigned && motors[motor].path == PATH_SYSTEM) return d->cs;
+  const uint32_t mover = system_motor_mover(motor);
+  return (d->assigned && mover == d->cs) || jog_is_of_program(motor) ? mover : COORDINATE_SYSTEMS;
 }
 
-/* A motor that a program moves takes its coordinate system with it. An open loop is closed. */
+/* A motor that a program moves takes the coordinate system with it. An open loop is closed. */
 static void stop(uint32_t motor) {
-  if (is_of_program(motor))
-    protection_hooks.abort(axis_definitions[motor].cs);
+  const uint32_t cs = program_of(motor);
+  if (cs < COORDINATE_SYSTEMS)
+    protection_hooks.abort(cs);
   else if (motor_close(motor))
     (void)jog_stop_at(motor, i_variable_read(I_MOTOR_BLOCK * (motor + 1u) + (uint32_t)IXX15_ABORT_DECELERATION));
   else
@@ -233,8 +239,10 @@ bool protection_is_in_limit(uint32_t motor, bool up, bool homes) {
   return !homes && (beyond || has_passed(g, &view, up));
 }
 
+/* The move that asks has not begun. */
 void protection_refuse(uint32_t motor) {
   refused |= 1u << motor;
+  ending |= 1u << system_motor_mover(motor);
   asked = true;
   hal_request_real_time();
 }
@@ -348,7 +356,7 @@ void protection_stand(bool still) { stands = still; }
 void protection_pass(void) {
   if (stands) return;
   asked = false;
-  if ((gone | refused) != 0u) end_programs();
+  if ((ending | refused) != 0u) end_programs();
   foreground = i_variable_foreground_in_position();
   protection_always_watched = foreground ? UINT32_MAX : 0u;
   uint32_t left = motors_active;

@@ -21,14 +21,14 @@ void protection_motor_changed(uint32_t motor); /* 1..32: a variable of it was wr
 void protection_pass(void);                    /* real-time task: all motors */
 bool protection_is_asked_for(void);            /* real-time task: the servo task has seen what does not wait */
 void protection_stand(bool still);             /* background: nothing is looked at (SAVE) */
-/* Motor 0..31, killed by a variable of it: the program of its system ends with the next pass. */
+/* Motor 0..31, killed by a variable of it: the program of its system ends with the next pass, and one that homes it. */
 void protection_kill(uint32_t motor);
-/* Bit n: motor n. A program of theirs begins: what is still to be done is about others. Servo task held off. */
-void protection_begin(uint32_t of);
+/* The program of a coordinate system begins: what is still to be done is about others. Servo task held off. */
+void protection_begin(uint32_t cs);
 /* Motor 0..31, servo task held off: whether it stands in a limit of that side, as it is now. Software limits count for
  * no search for home. */
 bool protection_is_in_limit(uint32_t motor, bool up, bool homes);
-/* The same: a program asks for more of it. That is aborted with the next pass. */
+/* The same: a program asks for more of it. The one that does is aborted with the next pass. */
 void protection_refuse(uint32_t motor);
 
 extern uint32_t protection_watched;                 /* S; bit n: the servo task looks at motor n in this interrupt */

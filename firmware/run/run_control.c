@@ -156,7 +156,7 @@ static void set_run(uint32_t cs, bool begins, bool single_step) {
     s->ended = s->ended && waits;
     s->failure = RUN_TIME_NONE;
     s->match_failed = false;
-    protection_begin(s->motors);
+    protection_begin(cs);
     if (!waits) s->may_join = false;
   }
   s->end_block = s->quit_at_block = false;
@@ -171,7 +171,7 @@ static void set_run(uint32_t cs, bool begins, bool single_step) {
   cs_busy |= 1u << cs;
 }
 
-/* One may have tripped since check_motors. Servo task held off. */
+/* One may have tripped since check_motors, which no axis need move. Servo task held off. */
 static bool any_open(uint32_t of) {
   for (uint32_t left = of; left != 0; left &= left - 1u)
     if (motors[__builtin_ctz(left)].loop != LOOP_CLOSED) return true;
@@ -202,11 +202,11 @@ error_t run_start(uint32_t cs, bool single_step) {
     system_motors_resolve(cs);
   }
   state = hal_mask_servo();
-  if (begins ? (jogs_busy & s->motors) != 0 : !s->running) {
+  if (begins ? (jogs_busy & axis_motors[cs]) != 0 : !s->running) {
     hal_unmask(state);
     return begins ? ERR_MOVE_IN_PROGRESS : ERR_NONE;
   }
-  if (begins && any_open(s->motors)) {
+  if (begins && any_open(axis_motors[cs])) {
     hal_unmask(state);
     return ERR_OPEN_LOOP;
   }

@@ -142,6 +142,34 @@ TEST_F(MotionLimits, RapidMovesAreOfTheirProgram) {
   }
 }
 
+// So is that of a motor of no coordinate system, or of another one: it takes the program that homes it with it.
+TEST_F(MotionLimits, AMotorIsOfTheProgramThatHomesIt) {
+  for (const char* of : {"&2#5->0", "&2#5->X"}) {
+    flags(5, 0);
+    ASSERT_EQ(c_.line(of), "");
+    c_.line("I523=20 I515=.5 P1=0");
+    run({"HOME5", "DWELL10", "P1=1"});
+    follow(200);
+    const double was = at(5);
+    ASSERT_GT(was, 1000);
+    flags(5, kPositive);
+    follow(6);
+    EXPECT_FALSE(runs()) << of;
+    EXPECT_TRUE(status1(5, 12)) << of;
+    follow(300);
+    EXPECT_LT(at(5), was + 700) << of;
+    EXPECT_EQ(c_.line("P1"), "0") << of;
+    c_.line("&1B1R"); /* further into it */
+    follow(100);
+    EXPECT_FALSE(runs()) << of;
+    EXPECT_EQ(c_.line("P1"), "0") << of;
+    EXPECT_TRUE(status2(5, 11)) << of;
+    c_.line("#5K");
+    counts(5, 0);
+    servo(2);
+  }
+}
+
 // A program does not pass over a move into a limit in which its motor stands: it is aborted.
 TEST_F(MotionLimits, AProgramEndsAtAMoveIntoALimit) {
   for (const char* move : {"RAPID X20000", "HOME1", "LINEAR TM100 TA20 TS0 X20000"}) {

@@ -220,6 +220,60 @@ TEST_F(Protection, ProgramsOfMotorsThatAVariableKillsEnd) {
   EXPECT_FALSE(status1(1, 13));
 }
 
+// So does one that homes a motor which is not its own, when that trips, by itself or with others, or is killed.
+TEST_F(Protection, AProgramEndsWithTheMotorThatItHomes) {
+  for (const char* of : {"&2#5->0", "&2#5->X"})
+    for (const unsigned cause : {0u, 1u, 2u}) {
+      ASSERT_EQ(c_.line(of), "");
+      ASSERT_EQ(c_.line(cause == 1 ? "&1#1->0#2->0" : "&1#1->X#2->Y"), ""); /* else &1 ends with a motor of its own */
+      c_.line("I500=1 I523=20 I511=1600 I111=1600 I124=$800001 I524=$C00001 P1=0 #1K #2K #5K");
+      for (const unsigned motor : {1u, 2u, 5u}) counts(motor, 0);
+      servo(3);
+      run({"HOME5", "DWELL10", "P1=1"});
+      follow(50);
+      ASSERT_TRUE(runs());
+      if (cause == 2)
+        c_.line("I500=0");
+      else
+        counts(cause == 0 ? 5 : 1, at(cause == 0 ? 5 : 1) + 101);
+      servo(3);
+      EXPECT_EQ(loop(5), LOOP_KILLED) << of << cause;
+      EXPECT_FALSE(runs()) << of << cause;
+      follow(100);
+      EXPECT_EQ(c_.line("P1"), "0") << of << cause;
+    }
+}
+
+// Another's program homes it no longer when it has come to rest: it does not end with it.
+TEST_F(Protection, AProgramGoesOnWithoutAMotorThatItDoesNotHomeAnyMore) {
+  c_.line("I523=20 I123=20 I524=$C00001 I511=1600");
+  run({"HOME1,5"});
+  follow(50);
+  c_.line("#5J/");
+  follow(100);
+  counts(5, at(5) + 101);
+  servo(3);
+  EXPECT_EQ(loop(5), LOOP_KILLED);
+  EXPECT_TRUE(runs());
+}
+
+// A motor that no axis moves is its system's too: a start asks for it, and what was is forgotten.
+TEST_F(Protection, AMotorOfAnInverseProgramThatIsOffIsOfItsSystem) {
+  ASSERT_EQ(c_.line("&1#2->I"), "");
+  run({"INC TM1000 TA20 TS0", "X2000", "X2000", "X2000"});
+  follow(50);
+  c_.line("&1A");
+  follow(200);
+  c_.line("I200=0");
+  ASSERT_EQ(c_.line("I200=1 &1E"), "");
+  ASSERT_EQ(c_.line("&1B1R"), "");
+  follow(50);
+  EXPECT_TRUE(runs());
+  c_.line("I200=0");
+  follow(3);
+  EXPECT_FALSE(runs());
+}
+
 // Not one that is begun behind it, before the next pass has looked.
 TEST_F(Protection, AProgramThatBeginsBehindAKillIsNotEndedByIt) {
   run({"INC TM1000 TA20 TS0", "X2000 Y1000", "X2000 Y1000", "X2000 Y1000"});
