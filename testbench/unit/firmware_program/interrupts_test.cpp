@@ -280,7 +280,7 @@ TEST_F(Interrupts, AnAbortStopsWhatTheProgramBeginsToHome) {
   ASSERT_EQ(host("I100=1 I200=1 I111=0 I112=0 I211=0 I212=0 I215=10 I219=1 I220=0 I221=10 I223=20 I292=2 &1#1->X"), "");
   ASSERT_EQ(host("OPEN PROG 1 CLEAR HOME2 CLOSE #1J/#2J/"), "");
   unsigned begun = 0;
-  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     for (int i = 0; i < 2000 && (jog_is_moving(0) || jog_is_moving(1)); ++i) platform::servo_ticks(1);
     platform::servo_ticks(3);
     ASSERT_EQ(host("&1B1R"), "") << seed;
@@ -290,7 +290,7 @@ TEST_F(Interrupts, AnAbortStopsWhatTheProgramBeginsToHome) {
     begun += jog_is_moving(1) ? 1 : 0;
     ASSERT_TRUE(!jog_is_moving(1) || jog_is_to_ramp(1) || motors[1].status.aborting) << seed;
   }
-  EXPECT_GT(begun, 5u);
+  EXPECT_GT(begun, 3u);
 }
 
 // The host makes X incremental, a program Y, at the same time. Both are afterwards.
