@@ -308,21 +308,24 @@ bool system_motors_are_away(uint32_t cs) {
   return away;
 }
 
-/* By a move of its own, RAPID or HOME. It begins before the servo task starts the move. */
-static bool moves_alone(uint32_t cs, uint32_t motor) {
+/* The move begins for its motors before the servo task starts it. */
+uint32_t system_motors_alone(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  const uint32_t state = hal_mask_servo();
   const struct move* m = s->active ? &s->moves[s->executing] : cs_next_move(s);
-  const bool alone = m != 0 && m->kind == MOVE_OWN && (m->own >> motor & 1u) != 0;
+  return m != 0 && m->kind == MOVE_OWN ? m->own : 0u;
+}
+
+static bool moves_alone(uint32_t cs, uint32_t motor) {
+  const uint32_t state = hal_mask_servo(), of = system_motors_alone(cs);
   hal_unmask(state);
-  return alone;
+  return (of >> motor & 1u) != 0;
 }
 
 uint32_t system_motor_mover(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
   if (d->assigned && moves_alone(d->cs, motor)) return d->cs;
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
-    if (moves_alone(cs, motor)) return cs;
+  for (uint32_t left = cs_awake; left != 0; left &= left - 1u)
+    if (moves_alone((uint32_t)__builtin_ctz(left), motor)) return (uint32_t)__builtin_ctz(left);
   return COORDINATE_SYSTEMS;
 }
 
@@ -340,9 +343,12 @@ void system_motors_ramp(uint32_t cs) {
     if ((axis_definitions[motor].assigned && axis_definitions[motor].cs == cs) || is_moved_by(cs, motor)) ramp(motor);
 }
 
-void system_motors_ramp_rest(uint32_t cs) {
-  for (uint32_t motor = 0; motor < MOTORS; motor++)
-    if (is_moved_by(cs, motor)) ramp(motor);
+/* The real-time task may have forgotten whose they are; another's they are only when it moves them. */
+void system_motors_ramp_rest(uint32_t cs, uint32_t of) {
+  for (uint32_t left = of; left != 0; left &= left - 1u) {
+    const uint32_t motor = (uint32_t)__builtin_ctz(left), mover = system_motor_mover(motor);
+    if (jog_is_of_program(motor) && (mover == cs || mover == COORDINATE_SYSTEMS)) ramp(motor);
+  }
 }
 
 void system_motors_set_position(uint32_t cs, uint32_t axes, const double position[AXIS_COUNT]) {

@@ -254,19 +254,17 @@ void run_quit(uint32_t cs) {
   hal_unmask(state);
 }
 
-/* Motors that the real-time task has begun to move since their ramps were asked for are asked once more, before it may
- * forget whose they are. */
+/* Motors that the real-time task has begun to move since their ramps were asked for are asked once more. */
 void run_abort(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   system_motors_ramp(cs);
-  const uint32_t held_off = hal_mask_real_time(), state = hal_mask_servo();
+  const uint32_t state = hal_mask_servo(), alone = system_motors_alone(cs);
   drop_moves(cs);
   s->running = s->quit = s->end_block = s->stepping = s->continuous = s->matching = s->must_return = false;
   s->quit_at_block = false;
   s->must_have_returned = s->restarts = false;
   hal_unmask(state);
-  system_motors_ramp_rest(cs);
-  hal_unmask(held_off);
+  system_motors_ramp_rest(cs, alone);
 }
 
 /* What leaves its path after an abort is not held: its ramps are planned for the rate that there is. */
