@@ -161,15 +161,14 @@ static void trip(uint32_t motor) {
   abort_programs(systems);
 }
 
-/* The writer of a variable may be the program itself, in the middle of a line. Nobody begins to move it meanwhile. */
+/* The writer of a variable may be the program itself, in the middle of a line. */
 void protection_kill(uint32_t motor) {
   if (motors[motor].loop == LOOP_KILLED) return;
-  const uint32_t held_off = hal_mask_real_time(), systems = systems_of(motor);
+  const uint32_t systems = systems_of(motor); /* nobody moves it any more when it is dead */
   motor_kill(motor);
   const uint32_t state = hal_mask_servo();
   ending |= systems;
   hal_unmask(state);
-  hal_unmask(held_off);
 }
 
 void protection_begin(uint32_t cs) {

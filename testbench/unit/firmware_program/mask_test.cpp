@@ -185,7 +185,9 @@ TEST(Mask, LongestSectionThatHoldsATaskOff) {
                            "PC PE",
                            "OPEN PLC 2 CLOSE",
                            "LIST PE",
-                           "A"})
+                           "A",
+                           "#1J/",
+                           "I100=0 I100=1"})
     board.send(std::string(line) + "\r", 30.0);
   RandomLines random(21);
   for (int i = 0; i < 300; ++i) board.send(random.next() + "\r", 3.0);
