@@ -10,7 +10,8 @@ namespace {
 class WatchdogTrip : public Controller {
  protected:
   bool tripped() { return machine().outputs().get(pin::kWdTripped) != 0; }
-  void run_to_trip() { bus().wait_pin(pin::kWdTripped, 1, ms_to_ticks(100)); }
+  // 4,095 servo periods of 18 us and 25 ms are 100 ms; it is judged by the scoreboard.
+  void run_to_trip() { bus().wait_pin(pin::kWdTripped, 1, ms_to_ticks(200)); }
   std::string first(const WatchdogScoreboard& s) { return s.violations().empty() ? "" : s.violations().front(); }
   long number(const std::string& line) { return std::strtol(ask(line).c_str(), nullptr, 10); }
   void reset_command() {
