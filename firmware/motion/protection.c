@@ -36,8 +36,7 @@ enum { FIRST_TURN = 0x11111111 };     /* motors that are looked at in the first 
 static uint32_t turn, urgent_watched; /* S: which it is; bit n: what is urgent about motor n is looked for */
 static volatile bool asked;           /* S sets, R clears: a pass does not wait for its turn */
 
-static volatile uint32_t
-    ending; /* bit n: a variable has killed a motor of program n, or what follows. V, Q set, R clears */
+static volatile uint32_t ending;  /* bit n: the program of system n is to end. V, Q set, R clears */
 static volatile uint32_t refused; /* bit n: a program has asked for more of motor n, in a limit. Q sets, R clears */
 static volatile bool foreground;  /* I13, as the last pass has seen it */
 static volatile bool stands;      /* B */

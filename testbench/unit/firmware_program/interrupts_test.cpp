@@ -370,7 +370,7 @@ TEST_F(Interrupts, PartsOfALiveWordWithoutMasksAreLost) {
   fake_tasks_ignore_masks(true);
   for (const SharedWord& word : kSharedWords) {
     unsigned lost = 0, written = 0;
-    for (std::uint32_t seed = 1; seed <= 50 && lost == 0; ++seed) lost = high_bytes_lost(word, seed, written);
+    for (std::uint32_t seed = 1; seed <= 1000 && lost == 0; ++seed) lost = high_bytes_lost(word, seed, written);
     EXPECT_GT(lost, 0u) << std::hex << word.address;
   }
 }
