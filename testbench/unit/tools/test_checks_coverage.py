@@ -8,6 +8,7 @@ from tree import TOOLS, Tree, run
 
 sys.path.insert(0, str(TOOLS))
 import coverage
+import coverage_exclusions
 
 PAGE = "docs/coverage.md"
 
@@ -116,6 +117,63 @@ class Rows(Tree):
         self.expect(self.run_tool("coverage.py", "--check"), 0, "1 row(s) stale or absent")
         self.assertIn(f"| `host/host_port` | {coverage.NOT_RUN} |  |  |  |\n", self.page())
         self.assertIn("| `board/watchdog` | 1 of 1 (100.0 %) | 1 of 2 (50.0 %) | 1 of 2 (50.0 %) |", self.page())
+
+
+SOURCE = "module watchdog (\n  if (a) b <= 1;\n  else b <= 0;\n  logic [1:0] a_q;\n"
+LINES = {("systemc/board/watchdog.h", 7): 0}
+POINTS = {("line", "rtl/board/watchdog.sv", 2, " block"): 3,
+          ("branch", "rtl/board/watchdog.sv", 3, " else"): 0,
+          ("toggle", "rtl/board/watchdog.sv", 4, " a_q[0]"): 2,
+          ("toggle", "rtl/board/watchdog.sv", 4, " a_q[1]"): 1}
+
+
+class Exclusions(Tree):
+    """Two lines and two signals of a module, one of each never reached."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("rtl/board/watchdog.sv", SOURCE)
+
+    def judged(self, *rows):
+        """(points that count, how many each exclusion leaves out, mistakes)"""
+        text = "".join(f"[[exclusion]]\nfile = 'rtl/board/watchdog.sv'\n{row}\nreason = 'because'\n" for row in rows)
+        self.write(coverage_exclusions.FILE, text)
+        exclusions, mistakes = coverage_exclusions.read(self.root)
+        lines, points, left, more = coverage_exclusions.leave_out(self.root, exclusions, LINES, POINTS,
+                                                                  coverage.enough)
+        self.assertEqual(lines, LINES)
+        return set(POINTS) - set(points), list(left.values()), mistakes + more
+
+    def test_what_no_test_can_reach_does_not_count(self):
+        keys = list(POINTS)
+        self.assertEqual(self.judged("lines = '^  else'", "bits = 'a_q.1.'"), ({keys[1], keys[3]}, [1, 1], []))
+
+    def test_one_that_is_hit_fails(self):
+        for row, where in (("lines = 'if .a.'", "2 block"), ("bits = 'a_q.*'", "4 a_q[0]")):
+            found = self.judged(row)[2]
+            self.assertEqual(len(found), 1)
+            self.assertTrue(found[0].endswith(f"a test reached rtl/board/watchdog.sv:{where}"), found)
+
+    def test_one_of_nothing_fails(self):
+        for row, wanted in (("bits = 'a_q'", "nothing of it was counted"), ("lines = 'logic'", "nothing of it was"),
+                            ("lines = 'none'", "no line has it"), ("lines = '('", "missing )"),
+                            ("bit = 'a'", "exclusion 1 has bit, file, reason; expected file"),
+                            ("lines = 'if'\nbits = 'a'", "exclusion 1 has"), ("lines = 7", "exclusion 1 has")):
+            found = self.judged(row)[2]
+            self.assertTrue(len(found) == 1 and wanted in found[0], f"{row}: {found}")
+
+    def test_a_wrong_one_fails_without_a_run(self):
+        self.write(coverage_exclusions.FILE, "[[exclusion]]\nfile = 'rtl/none.sv'\nlines = 'a'\nreason = 'b'\n")
+        self.assertIn("no such file", coverage_exclusions.read(self.root)[1][0])
+        self.write(coverage_exclusions.FILE, "[[exclusion]\n")
+        self.assertEqual(len(coverage_exclusions.read(self.root)[1]), 1)
+
+    def test_the_page_names_each_with_its_reason(self):
+        self.judged("bits = 'a_q.(1|3).'")
+        exclusion = coverage_exclusions.read(self.root)[0][0]
+        self.assertIn("| `rtl/board/watchdog.sv` | 2 bits: `a_q.(1\\|3).` | because |\n",
+                      coverage.left_out({exclusion: 2}))
+        self.assertEqual(coverage.left_out({}), "")
 
 
 if __name__ == "__main__":
