@@ -322,8 +322,8 @@ class Regression {
     const nlohmann::json& counts = content.at("counts");
     for (std::size_t b = 0; b < buckets_.size(); ++b) {
       const Bucket& bucket = buckets_[b];
-      std::cout << fmt::format("{} x {}: {}{}{}\n", bucket.runs.size(), bucket.group, bucket.verdict,
-                               bucket.step.empty() ? "" : ", " + bucket.step,
+      std::cout << fmt::format("{} x {}: {}{}{}\n", bucket.runs.size(), readable_text(bucket.group), bucket.verdict,
+                               bucket.step.empty() ? "" : ", " + readable_text(bucket.step),
                                bucket.says.empty() ? "" : ": " + bucket.says);
       if (b < replays_.size() && !replays_[b].wave.empty())
         std::cout << fmt::format("    gtkwave {}/{}{}\n", folder_, replays_[b].wave,
@@ -335,8 +335,8 @@ class Regression {
     tell(report.coverage);
     const auto missing = counts.at("not_run").get<std::size_t>(), skipped = counts.at("skipped").get<std::size_t>();
     const bool passed = content.at("verdict") == "passed";
-    std::cout << fmt::format("{} {}: {} runs, {} failed", passed ? "PASS" : "FAIL", plan_.title, plan_.runs.size(),
-                             counts.at("failed").get<std::size_t>());
+    std::cout << fmt::format("{} {}: {} runs, {} failed", passed ? "PASS" : "FAIL", readable_text(plan_.title),
+                             plan_.runs.size(), counts.at("failed").get<std::size_t>());
     if (skipped != 0) std::cout << fmt::format(", {} skipped", skipped);
     if (missing != 0) std::cout << fmt::format(", {} not run: --resume makes them", missing);
     if (skipped == plan_.runs.size()) std::cout << ", none passed";

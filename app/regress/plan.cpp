@@ -27,8 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kPlanKeys{"title", "row"};
-const std::vector<std::string> kBenchKeys{"bench", "engine",   "board",    "seeds", "fresh",
-                                          "size",  "aperture", "firmware", "limit", "negative"};
+const std::vector<std::string> kBenchKeys{"bench",    "engine",   "board", "seeds",    "fresh", "size",
+                                          "aperture", "firmware", "limit", "negative", "skew"};
 const std::vector<std::string> kCommandKeys{"name", "command", "seeds", "fresh", "repeat", "limit", "alone"};
 
 constexpr std::size_t kMostRuns = 1'000'000;
@@ -48,6 +48,22 @@ std::vector<std::string> one_or_more(const TomlTable& row, const std::string& ke
   std::vector<std::string> texts = row.texts(key);
   if (texts.empty()) row.fail(row.need(key), key, "one or more");
   return texts;
+}
+
+constexpr const char* kSkewText = "true, false or [false, true]";
+
+std::vector<bool> skews_of(const TomlTable& row) {
+  if (!row.has("skew")) return {false};
+  const toml::node& node = row.need("skew");
+  if (!node.is_array()) return {row.flag("skew")};
+  std::vector<bool> skews;
+  for (const toml::node& item : *node.as_array()) {
+    const auto skew = item.value_exact<bool>();
+    if (!skew) row.fail(item, "skew", kSkewText);
+    skews.push_back(*skew);
+  }
+  if (skews.empty()) row.fail(node, "skew", kSkewText);
+  return skews;
 }
 
 void add_seeds(const TomlTable& row, const toml::node& node, std::vector<std::uint64_t>& seeds) {
@@ -179,13 +195,15 @@ class Reader {
       for (const Bench* bench : named(row, benches_, name))
         for (const std::string& board : one_or_more(row, "board", bench->board))
           for (const std::string& aperture : one_or_more(row, "aperture", ""))
-            for (const std::string& firmware : one_or_more(row, "firmware", ""))
-              for (const std::string& engine : one_or_more(row, "engine", "systemc"))
-                add_seeds_of(row, *bench, is_pattern(name), {engine, board, aperture, firmware}, seeds, limit);
+            for (const bool skew : skews_of(row))
+              for (const std::string& firmware : one_or_more(row, "firmware", ""))
+                for (const std::string& engine : one_or_more(row, "engine", "systemc"))
+                  add_seeds_of(row, *bench, is_pattern(name), {engine, board, aperture, firmware, skew}, seeds, limit);
   }
 
   struct Choice {
     std::string engine, board, aperture, firmware;
+    bool skew;
   };
 
   void add_seeds_of(const TomlTable& row, const Bench& bench, bool by_pattern, const Choice& choice,
@@ -194,6 +212,7 @@ class Reader {
     options.engine = choice.engine;
     options.board = is_board_file(choice.board) ? file_path(choice.board) : choice.board;
     if (!choice.aperture.empty()) options.aperture = choice.aperture;
+    options.skew = choice.skew;
     options.firmware = choice.firmware.empty() ? "" : file_path(choice.firmware);
     const MachineConfig config = checked(row, options);
     if (!bench.need.met(config.board)) {
@@ -223,10 +242,11 @@ class Reader {
                                      fmt::format("{} or more for {}", bench.least_size, bench.name)));
       also("--size", size, size);
     }
-    if (row.flag("negative")) {
-      words.emplace_back("--negative");
-      others += " negative";
-    }
+    for (const auto& [given, flag] : {std::pair(choice.skew, "skew"), std::pair(row.flag("negative"), "negative")})
+      if (given) {
+        words.push_back(fmt::format("--{}", flag));
+        others += fmt::format(" {}", flag);
+      }
     run.column = fmt::format("{} {}", choice.engine, others);
     for (const std::uint64_t seed : seeds) {
       run.seed = seed;

@@ -58,6 +58,9 @@ def regress_mistakes():
                          (good + '[[row]]\nbench = "smoke"\nseeds = "9-1"\n', "seeds: found \"9-1\"; expected seeds"),
                          (good + '[[row]]\nbench = "smoke"\nseeds = -1\n', "seeds: found -1"),
                          (good + '[[row]]\nbench = "smoke"\nfresh = 0\n', "fresh: found 0"),
+                         (good + '[[row]]\nbench = "smoke"\nskew = 1\n', "plan.toml:6: skew: found 1; expected true"),
+                         (good + '[[row]]\nbench = "smoke"\nskew = [true, 1]\n', "plan.toml:6: skew: found 1"),
+                         (good + '[[row]]\nbench = "smoke"\nskew = []\n', "plan.toml:6: skew: found []; expected true"),
                          (good + '[[row]]\nbench = "smoke"\nlimit = "soon"\n', "limit: found \"soon\""),
                          (good + '[[row]]\nbench = "smoke"\nsize = 3\n', "an end of its own"),
                          (good + '[[row]]\nbench = "smoke"\nspeed = 3\n', "unknown key speed"),
@@ -155,14 +158,18 @@ def regress_rows():
     folder = Folder('[[row]]\nbench = "smoke"\nengine = ["systemc", "rtl"]\nboard = ["geobrick-lv-8", "umac-turbo"]\n'
                     'seeds = [7, "7-8"]\n[[row]]\nbench = "smo*"\nseeds = 8\n[[row]]\nbench = "clock-m*"\n'
                     'board = ["geobrick-lv-8", "turbo-pmac2-ultralite"]\naperture = ["0.5", "1"]\n'
-                    '[[row]]\nbench = "rotary-machining"\nsize = 50\n')
+                    '[[row]]\nbench = "rotary-machining"\nsize = 50\n'
+                    '[[row]]\nbench = "flags"\nskew = [false, true]\n[[row]]\nbench = "dpram"\nskew = true\n')
     r = folder.regress("--list")
     lines = r.stdout.splitlines()
-    check(len(lines) == len(set(lines)) == 11, r.stdout + r.stderr)
+    check(len(lines) == len(set(lines)) == 14, r.stdout + r.stderr)
     for wanted in ("smoke --engine rtl --board umac-turbo --seed 8",
                    "smoke --engine systemc --board geobrick-lv-8 --seed 7",
                    "clock-macro --engine systemc --board turbo-pmac2-ultralite --aperture 0.5 --seed 1",
-                   "rotary-machining --engine systemc --board geobrick-lv-8 --size 50 --seed 1"):
+                   "rotary-machining --engine systemc --board geobrick-lv-8 --size 50 --seed 1",
+                   "flags --engine systemc --board geobrick-lv-8 --seed 1",
+                   "flags --engine systemc --board geobrick-lv-8 --skew --seed 1",
+                   "dpram --engine systemc --board geobrick-lv-8 --skew --seed 1"):
         check(f"brick run {wanted}" in lines, f"{wanted} in {lines}")
     check(not folder.out.exists(), "--list has made something")
     last = 2**64 - 1

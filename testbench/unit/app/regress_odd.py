@@ -49,12 +49,14 @@ def regress_foreign_steps():
 
 
 def regress_odd_files():
-    """What has the name of a result and is no file hangs nobody up; every name can stand in XML."""
+    """What has the name of a result and is no file hangs nobody up; every name can stand in XML and on a terminal."""
     commands = ("mkdir run.json result.json", "mkfifo run.json result.json.new", "rm output.txt; mkfifo output.txt")
-    folder = Folder("".join(f'[[row]]\nname = "\\u0007{i}"\ncommand = ["sh", "-c", "{line}; exit 1", "\\u0001\\n"]\n'
-                            for i, line in enumerate(commands)))
+    folder = Folder('title = "\\u001b[2Jodd"\n' + "".join(
+        f'[[row]]\nname = "\\u0007{i}"\ncommand = ["sh", "-c", "{line}; exit 1", "\\u0001\\n"]\n'
+        for i, line in enumerate(commands)))
     r = folder.regress()
     check(r.returncode == 1 and list(folder.verdicts().values()) == ["failed"] * len(commands), f"{r}")
+    check("FAIL <1B>[2Jodd: 3 runs" in r.stdout and "x <07>0: failed" in r.stdout, f"names on a terminal: {r.stdout}")
     cases = xml.parse(folder.out / "report.xml").getroot().iter("testcase")
     check([c.get("classname") for c in cases] == [f"<07>{i}" for i in range(len(commands))], "names in XML")
 
