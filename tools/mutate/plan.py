@@ -25,6 +25,7 @@ class Module:
     slip: tuple
     files: tuple = ("*",)  # of the folder
     image: tuple = ()  # of the firmware
+    rest: bool = False  # a folder of the firmware with a sum, and a goal, of its own
 
 
 def tests(entries, sets):
@@ -48,7 +49,7 @@ def read(file=FILE):
             name: Module(kind, name, row["file"], tuple(row.get("tops", [name])), row.get("proof", ""),
                          tests(row["opinion"], sets), tests(row.get("board", []), sets),
                          tests(row.get("slip", []), sets), tuple(row.get("files", ["*"])),
-                         tests(row.get("image", []), sets))
+                         tests(row.get("image", []), sets), row.get("rest", False))
             for name, row in modules.items()}
     return kinds
 

@@ -47,7 +47,8 @@ one process it counts when that test fails alone, too (seen of all rows but the 
 - **at least**: the lower end of what the score of all mutants of the module may be, at 95 % (Wilson's interval, one
   side), from those drawn; the score itself where all were judged. It holds of mutants that no test was written for:
   where tests followed on survivors of the draw (firmware, all folders; model `host`) the score is of the draw, and a
-  seed that is new says less. *Together* each module weighs by its mutants.
+  seed that is new says less. *Together* each module weighs by its mutants; *the rest* are folders of the firmware
+  beside the five with a sum of their own.
 - **stale**, at the commit: the file has changed since it was judged.
 
 Not mutated: what is fixed before it runs (widths, parameters, generate blocks, sensitivity lists; initial values of
@@ -158,32 +159,39 @@ def problems_of(results, given):
     return problems
 
 
+def seconds_of(heads, rows):
+    return Score(rows).seconds + sum(head["build_seconds"] for head in heads)
+
+
+def line(name, mutants, rows, cells, seconds, seed, tree):
+    """Of the table."""
+    score = Score(rows)
+    return "| " + " | ".join(map(str, [name, mutants, len(rows), score.equal, score.outside, score.alive, *cells,
+                                       f"{seconds:.0f}", seed, tree])) + " |"
+
+
 def page(results, given, modules):
     """`modules`: {kind: {name: Module}}"""
     lines = [HEAD]
     for kind in sorted({kind for kind, _ in results}):
         title = {"rtl": "RTL"}.get(kind, kind.capitalize())
         lines += [f"## {title}", "| " + " | ".join(COLUMNS) + " |", "|---" * len(COLUMNS) + "|"]
-        everything, seconds = [], 0.0
-        for (of, name), (heads, rows) in results.items():
-            if of != kind:
-                continue
+        of_kind = {name: result for (of, name), result in results.items() if of == kind}
+        for name, (heads, rows) in of_kind.items():
             score, head = Score(rows), heads[0]
-            building = sum(h["build_seconds"] for h in heads)
-            everything, seconds = everything + rows, seconds + score.seconds + building
             complete = score.counted() + score.equal + score.outside == head["mutants"]
-            tree, slip = head["commit"] + (" and changes" if head["dirty"] else ""), of in WITH_SLIP
-            if any(h["source"] != source_hash(ROOT, modules[of][name]) for h in heads):
+            tree = head["commit"] + (" and changes" if head["dirty"] else "")
+            if any(h["source"] != source_hash(ROOT, modules[kind][name]) for h in heads):
                 tree += STALE
-            lines.append("| " + " | ".join(map(str, [
-                f"`{name}`", head["mutants"], len(rows), score.equal, score.outside, score.alive,
-                *score.cells(complete, slip), f"{score.seconds + building:.0f}", head["seed"], tree])) + " |")
-        score = Score(everything)
-        lines.append("| " + " | ".join(map(str, [
-            "together", sum(h[0]["mutants"] for (of, _), (h, _) in results.items() if of == kind), len(everything),
-            score.equal, score.outside, score.alive,
-            *together([result for (of, _), result in results.items() if of == kind], kind), f"{seconds:.0f}", "",
-            ""])) + " |")
+            lines.append(line(f"`{name}`", head["mutants"], rows, score.cells(complete, kind in WITH_SLIP),
+                              seconds_of(heads, rows), head["seed"], tree))
+        for what in ("together", "the rest together"):
+            some = [result for name, result in of_kind.items() if modules[kind][name].rest == (what != "together")]
+            if some:
+                rows = [row for _, of_module in some for row in of_module]
+                lines.append(line(what, sum(heads[0]["mutants"] for heads, _ in some), rows, together(some, kind),
+                                  sum(seconds_of(*result) for result in some), "", ""))
+        score = Score([row for _, rows in of_kind.values() for row in rows])
         lines += ["", "### Survivors", ""]
         if score.alive == 0:
             lines.append("None.")
