@@ -31,7 +31,7 @@ struct Number {
 
 // digits / 10^decimals, exactly: digits / 5^decimals must be whole, and what is left must have 23 bits at most.
 Number exact(std::uint64_t digits, unsigned decimals, bool negative) {
-  constexpr int kBits = 23, kExponents = 32;
+  constexpr int kBits = 23, kExponents = 32;  // the least of 18 digits is 2^-25
   Number number;
   number.negative = negative && digits != 0;
   if (decimals == 0) number.integer = digits;
@@ -49,7 +49,7 @@ Number exact(std::uint64_t digits, unsigned decimals, bool negative) {
   for (; bits > kBits && digits % 2 == 0; --bits) digits /= 2;
   if (number.exponent >= kExponents) {
     number.result = BinaryResult::kRange;
-  } else if (bits > kBits || number.exponent < -kExponents) {
+  } else if (bits > kBits) {
     number.result = BinaryResult::kFloat;
   } else {
     const auto magnitude = static_cast<std::uint32_t>(digits) << (kBits - bits);
@@ -95,7 +95,7 @@ class Converter {
 
   // Digits with at most one point; two points are a range. `at_` stands behind them.
   Number unsigned_number(bool negative) {
-    constexpr std::size_t kDigits = 18;
+    constexpr std::size_t kDigits = 18, kWhole = 10;  // 2^31 has ten
     std::string digits;
     unsigned decimals = 0;
     bool any = false;
@@ -115,7 +115,7 @@ class Converter {
     for (; decimals != 0 && digits.back() == '0'; --decimals) digits.pop_back();
     digits.erase(0, digits.find_first_not_of('0'));
     if (digits.size() > kDigits) {
-      number.result = digits.size() - decimals > 10 ? BinaryResult::kRange : BinaryResult::kFloat;
+      number.result = digits.size() > decimals + kWhole ? BinaryResult::kRange : BinaryResult::kFloat;
       return number;
     }
     return exact(digits.empty() ? 0 : std::stoull(digits), decimals, negative);

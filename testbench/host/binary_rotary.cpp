@@ -19,7 +19,7 @@ std::uint32_t BinaryRotary::header() const { return DPRAM_ROTARY_HEADERS + (cs_ 
 
 BinaryResult BinaryRotary::define(std::uint32_t start, std::uint32_t size) {
   if (size < kLeastSize || size % kItems != 0) return BinaryResult::kError;
-  if (DPRAM_OPEN + std::uint64_t{DPRAM_ITEM_BYTES} * (start + size) > regs::kDpramWindowSize)
+  if (DPRAM_OPEN + DPRAM_ITEM_BYTES * (std::uint64_t{start} + size) > regs::kDpramWindowSize)
     return BinaryResult::kAllocation;
   start_ = start;
   size_ = size;

@@ -14,7 +14,7 @@ constexpr char kSources = 0x05;                      // ^E
 constexpr char kClearInput = 0x18;                   // ^X, and its echo
 constexpr std::uint8_t kAskMark = 0x0E, kMark = 0;   // ^N behind an empty line: the sum of nothing
 constexpr Tick kMarkQuiet = ns_to_ticks(1'000'000);  // nothing for so long behind a NUL: it was no checksum
-constexpr Tick kClearWait = ns_to_ticks(10'000'000), kAskAgain = ns_to_ticks(20'000'000);
+constexpr Tick kClearWait = ns_to_ticks(10'000'000), kStartAgain = ns_to_ticks(20'000'000);
 }  // namespace
 
 bool is_report_control(std::uint8_t c) {
@@ -36,7 +36,7 @@ bool ControllerDialogue::start(Tick timeout) {
   port_.on_character = [&](std::uint8_t) { heard = true; };
   for (const Tick end = bus_.now() + timeout; !heard && bus_.now() < end && !bus_.tripped();) {
     port_.send(kAskStatus);
-    for (const Tick again = bus_.now() + kAskAgain; !heard && bus_.now() < again;) port_.run_until(again);
+    for (const Tick again = bus_.now() + kStartAgain; !heard && bus_.now() < again;) port_.run_until(again);
   }
   while (heard && port_.run_until(bus_.now() + kQuiet)) {}
   port_.on_character = [this](std::uint8_t c) { received(c); };

@@ -31,9 +31,10 @@ double DpramReports::float_long(std::uint32_t offset) {
 }
 
 void DpramReports::clear_handshakes() {
-  for (const std::uint32_t offset :
-       {DPRAM_MOTOR_HOST_BUSY, DPRAM_MOTOR_READY, DPRAM_BACKGROUND_HOST_BUSY, DPRAM_BACKGROUND_READY})
-    ram_.write(offset, 0);
+  ram_.write(DPRAM_MOTOR_HOST_BUSY, 0);
+  ram_.write(DPRAM_MOTOR_READY, 0);
+  ram_.write(DPRAM_BACKGROUND_HOST_BUSY, 0);
+  ram_.write(DPRAM_BACKGROUND_READY, 0);
 }
 
 void DpramReports::choose_motors(std::uint32_t mask) {

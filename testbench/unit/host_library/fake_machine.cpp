@@ -19,7 +19,8 @@ struct Machine::Impl {
   void look_at_port() {
     for (; !fake.later.empty() && fake.later.front().first <= now; fake.later.pop_front())
       fake.to_host.insert(fake.to_host.end(), fake.later.front().second.begin(), fake.later.front().second.end());
-    if (icr != 0) outputs.set(pin::kHreq, (icr & 1u) != 0 && !fake.to_host.empty() ? 1u : icr >> 1 & 1u);
+    if (icr != 0)
+      outputs.set(pin::kHreq, (icr & 1u) != 0 && !fake.to_host.empty() ? 1u : fake.takes ? icr >> 1 & 1u : 0u);
   }
 };
 
@@ -39,7 +40,7 @@ Machine::~Machine() = default;
 Tick Machine::now() const { return impl_->now; }
 HostInputs& Machine::inputs() { return impl_->pins; }
 const BoardOutputs& Machine::outputs() const { return impl_->outputs; }
-PciBridge* Machine::pci() { return nullptr; }
+PciBridge* Machine::pci() { return impl_->fake.bridge; }
 const PinSkew& Machine::skew() const {
   static const PinSkew kNone;
   return kNone;
@@ -81,7 +82,7 @@ void Machine::apply(TimeFs) {
   const std::uint32_t offset = m.pins.isa_sa - 0x210, word = (m.pins.isa_sa - 0xD0000) & ~1u;
   if (m.applied.isa_ior_n && !m.pins.isa_ior_n) {
     std::uint8_t value = f.io[offset];
-    if (offset == 2) value = static_cast<std::uint8_t>(0x02 | (f.to_host.empty() ? 0 : 1));
+    if (offset == 2) value = f.port_status.value_or((f.takes ? 2 : 0) | (f.to_host.empty() ? 0 : 1));
     if (offset == 7) value = f.to_host.empty() ? 0 : f.to_host.front();
     m.outputs.set(pin::kIsaSd, 0xFF00u | value);
   }

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct FakeMachine {
   std::vector<Change> changes;
   bool records = true;                                        // them
   std::deque<std::uint8_t> to_host;                           // characters of the controller
+  bool takes = true;                                          // TXDE: the host may send
+  std::optional<std::uint8_t> port_status;                    // read in place of the host port's
   std::string line;                                           // characters of the host up to CR
   std::function<std::string(const std::string&)> controller;  // line without CR -> bytes of the answer
   std::function<std::string(char)> control;                   // other control characters -> bytes of the answer
@@ -31,6 +34,7 @@ struct FakeMachine {
   std::map<std::uint32_t, std::uint16_t> memory;
   std::vector<std::pair<Tick, BoardOutputs>> planned;   // outputs from that edge on, in order
   Tick ready_low_from = kNever, ready_low_to = kNever;  // IOCHRDY
+  PciBridge* bridge = nullptr;                          // of a board that has one
 
   static FakeMachine& last();  // of the Machine made last
 };
