@@ -117,7 +117,7 @@ TEST_F(PciBridgeTest, BusThatHasLeftIsNotCalled) {
 TEST_F(PciBridgeTest, ConfigurationSpaceSaysWhatItIs) {
   EXPECT_EQ(configuration(PciBridge::kId), 0x56781234u);
   EXPECT_EQ(configuration(PciBridge::kSubsystem), 0xDEF09ABCu);
-  EXPECT_EQ(configuration(PciBridge::kClass) & 0xFF, 7u);
+  EXPECT_EQ(configuration(PciBridge::kClass), 0x06800007u) << "a bridge of no other kind, and its revision";
   EXPECT_EQ(configuration(PciBridge::kCommand), 0x02000003u) << "medium DEVSEL; I/O and memory are on";
   EXPECT_EQ(configuration(PciBridge::kInterrupt), 0x0100u) << "INTA#";
   configure(PciBridge::kInterrupt, 11);
@@ -168,6 +168,78 @@ TEST_F(PciBridgeTest, BarOfTheMemoryIsAsLongAsItsWindow) {
   EXPECT_EQ(try_read(PciSpace::kMemory, kMemory + 0x3FFF), tlm::TLM_OK_RESPONSE);
   EXPECT_EQ(try_read(PciSpace::kMemory, kMemory + 0x4000), tlm::TLM_ADDRESS_ERROR_RESPONSE);
   EXPECT_THAT(local_.cycles, ::testing::ElementsAre("read D7FFE 2"));
+}
+
+// Of the command register two bits count; the identity and what is not there take no write. A byte or two of a register
+// change these alone.
+TEST_F(PciBridgeTest, OnlyWhatIsTheStartUpsIsWritten) {
+  for (const std::uint32_t address : {0x00u, 0x08u, 0x0Cu, 0x18u, 0x2Cu, 0x30u}) {
+    const std::uint32_t before = configuration(address);
+    configure(address, ~before);
+    EXPECT_EQ(configuration(address), before) << std::hex << address;
+  }
+  configure(PciBridge::kCommand, 0xFFFFFFFF);
+  EXPECT_EQ(configuration(PciBridge::kCommand), 0x02000003u);
+  write(PciSpace::kConfiguration, PciBridge::kCommand, 2, 1);
+  EXPECT_EQ(configuration(PciBridge::kCommand), 0x02000002u);
+  write(PciSpace::kConfiguration, PciBridge::kCommand + 1, 1, 1);
+  EXPECT_EQ(configuration(PciBridge::kCommand), 0x02000002u);
+  write(PciSpace::kConfiguration, PciBridge::kBar1 + 2, 0x1234, 2);
+  EXPECT_EQ(configuration(PciBridge::kBar1), 0x12340000u);
+  write(PciSpace::kConfiguration, PciBridge::kBar0 + 1, 0xAB, 1);
+  EXPECT_EQ(configuration(PciBridge::kBar0), 0xAB01u);
+  configure(PciBridge::kInterrupt, 0xFFFFFF0B);
+  write(PciSpace::kConfiguration, PciBridge::kInterrupt + 1, 0x55, 1);
+  EXPECT_EQ(configuration(PciBridge::kInterrupt), 0x010Bu);
+  EXPECT_EQ(read(PciSpace::kConfiguration, 0xFF, 1), 0u) << "the last byte";
+  EXPECT_EQ(read(PciSpace::kConfiguration, PciBridge::kSubsystem + 1, 2), 0xF09Au);
+  EXPECT_THAT(local_.cycles, ::testing::IsEmpty());
+}
+
+// Before anybody makes local cycles the start-up finds the board, and nothing behind it.
+TEST_F(PciBridgeTest, WithoutALocalBusTheConfigurationSpaceAloneAnswers) {
+  bridge_.detach(local_);
+  EXPECT_EQ(configuration(PciBridge::kId), 0x56781234u);
+  EXPECT_EQ(try_read(PciSpace::kIo, kIo), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(try_read(PciSpace::kMemory, kMemory), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+}
+
+// Enables that are shorter than the data begin again, as TLM has it; each byte stands at its place in the DWORD.
+TEST_F(PciBridgeTest, ShortEnablesRepeatAndPartsOfADwordKeepTheirPlace) {
+  write(PciSpace::kIo, kIo + 6, 0xBBAA, 2);
+  write(PciSpace::kIo, kIo + 5, 0xCCBBAA, 3, 0b101);
+  EXPECT_EQ(read(PciSpace::kIo, kIo + 5, 2), 0x1615u);
+  write(PciSpace::kMemory, kMemory + 5, 0xCCBBAA, 3);
+  EXPECT_THAT(local_.cycles, ::testing::ElementsAre("out 216 AA", "out 217 BB", "out 215 AA", "out 217 CC", "in 215",
+                                                    "in 216", "write D0004 AA00 2", "write D0006 CCBB 3"));
+  local_.cycles.clear();
+  unsigned char data[4] = {1, 2, 3, 4}, enables[2] = {TLM_BYTE_ENABLED, 0};
+  PciCommand command(PciSpace::kIo);
+  tlm::tlm_generic_payload payload;
+  payload.set_command(tlm::TLM_WRITE_COMMAND);
+  payload.set_address(kIo);
+  payload.set_data_ptr(data);
+  payload.set_data_length(4);
+  payload.set_streaming_width(4);
+  payload.set_byte_enable_ptr(enables);
+  payload.set_byte_enable_length(2);
+  payload.set_extension(&command);
+  sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+  bridge_.transport(payload, delay);
+  payload.clear_extension(&command);
+  EXPECT_THAT(local_.cycles, ::testing::ElementsAre("out 210 01", "out 212 03"));
+}
+
+// A payload that is copied says the same space.
+TEST(PciBridgeCommand, IsCopiedWithItsPayload) {
+  const PciCommand command(PciSpace::kIo);
+  PciCommand other;
+  EXPECT_EQ(other.space, PciSpace::kMemory);
+  other.copy_from(command);
+  EXPECT_EQ(other.space, PciSpace::kIo);
+  tlm::tlm_extension_base* clone = command.clone();
+  EXPECT_EQ(static_cast<PciCommand*>(clone)->space, PciSpace::kIo);
+  clone->free();
 }
 
 TEST_F(PciBridgeTest, IoIsBytesOnTheLocalBus) {
