@@ -56,6 +56,10 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
 
   MotorDigest* motor_digest() override { return this; }
 
+  // Every block executes the next edge, whatever it has to do there: a board that is woken before each edge shows what
+  // one shows that sleeps (systemc/core/model_block.h).
+  void wake();
+
   // Blocks behind the pins, for SystemC users and tests; the ICs stand at now().
   ServoIc* servo_ic(unsigned index) { return gate_ics_.servo_ic(index, now_); }
   MacroIc* macro_ic(unsigned index) { return gate_ics_.macro_ic(index, now_); }

@@ -34,8 +34,6 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
   }
   // Drivers of one net have disagreed for more than kTolerated ticks; stays until there is one driver again.
   bool conflict() const { return conflict_ && several(); }
-  // True when the nets cannot change but by the IC outputs and nothing is about to switch.
-  bool settled() const { return !(in != q_); }
 
   Tick next_event() const override {
     if (q_.ext && (ext_phase_.moves(ext_phase) || ext_servo_.moves(ext_servo))) return now_ + 1;

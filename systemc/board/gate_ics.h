@@ -39,6 +39,10 @@ class GateIcs {
   Tick next_clock_event() const { return next_clock_; }  // PHASE and SERVO pins only
   // Executes the edges of what may have such a change by t. Returns true when a clock pin may have changed.
   bool advance(Tick t);
+  void wake(Tick t) {  // whoever drives the clocks or is watched executes the edge t
+    look_.fill(t);
+    next_clock_ = next_look_ = t;
+  }
 
   // Registers; `ic` as in BoardInputs::fitted. The edges up to t have been executed with the inputs as they were set.
   std::uint32_t read(unsigned ic, bool x, std::uint32_t addr, Tick t) const;
