@@ -62,8 +62,9 @@ class ChannelStrobe {
   // From the edge t on, a bit clock that finds no stream under way starts one, unless PHASE has done so.
   void ask(Tick t) { asked_ = t; }
 
-  // Executes the edges up to t; `rise`: PHASE rises at t, an edge of clk_ref. `load` and `sample` (with the number of
-  // the first bit and how many bits) are called in the order of their edges.
+  // Executes the edges up to t; `rise`: PHASE rises at t, an edge of clk_ref. `load` (with the number of
+  // bits that are left out of the stream before) and `sample` (with the number of the first bit and how many bits) are
+  // called in the order of their edges.
   template <class Load, class Sample>
   void advance(Tick t, bool rise, unsigned n, std::uint32_t word, Load load, Sample sample) {
     if (idle() && !rise && divider_.steady(n)) {  // the divider is executed when it is looked at
@@ -96,9 +97,10 @@ class ChannelStrobe {
       if (pending_ || (rise && ce == t)) {
         pending_ = rise = false;
         if (ce >= asked_) asked_ = kNever;
+        const unsigned cut = left_ == 0 ? 0 : left_ - 1;
         left_ = 24;
         word_ = word;
-        load();
+        load(cut);
       } else {
         --left_;
       }

@@ -172,10 +172,10 @@ void ServoChannel::sample_adc_stream(unsigned bit, unsigned count, std::uint32_t
   adc_[1].sample_stream(bit, count, b);
 }
 
-void ServoChannel::load_dac(bool trip) {
+void ServoChannel::load_dac(bool trip, unsigned cut) {
   for (unsigned i = 0; i < 2; ++i) {
     dac_[i].load(trip ? 0 : out_[i]);
-    dac_line_[i] = {dac_line_[i].present, dac_stream(i)};
+    dac_line_[i] = {dac_line(i, cut), dac_stream(i)};
   }
 }
 

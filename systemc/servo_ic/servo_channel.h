@@ -41,7 +41,7 @@ class ServoChannel {
   void latch_servo(Tick edge);
   void sample_adc(unsigned bit, unsigned count, bool a, bool b);
   void sample_adc_stream(unsigned bit, unsigned count, std::uint32_t a, std::uint32_t b);
-  void load_dac(bool trip);
+  void load_dac(bool trip, unsigned cut);
   // What the control word says of the DAC lines has changed: it is so for the last `unclocked` bits of the stream.
   void change_dac_lines(unsigned unclocked);
   void load_pwm();

@@ -77,8 +77,8 @@ void ServoChannels::catch_up_pwm(Tick t) const {
 void ServoChannels::run_dac(Tick t, bool phase_rise) {
   dac_.advance(
       t, phase_rise, divider(kDac), in.dac_strobe,
-      [this] {
-        for (ServoChannel& channel : channel_) channel.load_dac(in.trip);
+      [this](unsigned cut) {
+        for (ServoChannel& channel : channel_) channel.load_dac(in.trip, cut);
       },
       [](unsigned, unsigned) {});
 }
@@ -93,9 +93,9 @@ void ServoChannels::run_ref(Tick t, bool phase_rise) {
   }
   adc_.advance(
       t, phase_rise, divider(kAdc), in.adc_strobe,
-      [this] {
-        ++adc_streams_;
-        sent_from_ = std::max(sent_from_, 0) - static_cast<int>(kSerialBits);
+      [this](unsigned cut) {
+        adc_bits_ += kSerialBits - cut;
+        sent_from_ = std::max(sent_from_ - static_cast<int>(kSerialBits - cut), -static_cast<int>(kSerialBits));
       },
       [this](unsigned bit, unsigned count) {
         if (sends_) {
@@ -160,7 +160,7 @@ ConverterWords ServoChannels::dac_lines() const {
 }
 
 MotorDigest::AdcStream ServoChannels::adc_stream() const {
-  return {kSerialBits * adc_streams_ - adc_.left(), adc_.word(), adc_.left() == kSerialBits, adc_.end(divider(kAdc))};
+  return {adc_bits_ - adc_.left(), adc_.word(), adc_.left() == kSerialBits, adc_.end(divider(kAdc))};
 }
 
 void ServoChannels::send_adc(const ConverterWords& words) {
@@ -171,8 +171,7 @@ void ServoChannels::send_adc(const ConverterWords& words) {
 
 // Where it stands in the present stream, of which bit 23 is the first.
 std::uint32_t ServoChannels::sent_in_stream(unsigned line) const {
-  if (sent_from_ >= 0) return sent_[line] >> sent_from_;
-  return -sent_from_ < static_cast<int>(kSerialBits) ? sent_[line] << -sent_from_ : 0;
+  return sent_from_ >= 0 ? sent_[line] >> sent_from_ : sent_[line] << -sent_from_;
 }
 
 unsigned ServoChannels::adc_lines(bool b) const {
@@ -230,17 +229,19 @@ Tick ServoChannels::next_equ_of(const ServoChannel& channel) const {
 void ServoChannels::mark() {
   catch_up_pwm();
   marked_ = now_;
+  marked_adc_bits_ = adc_bits_;
   for (ServoChannel& channel : channel_) channel.mark(now_);
 }
 
 // Dividers, timers, encoders and PFM take no notice of the clocks: a jump executes them. The clocks latch and start
 // streams, which the period after the jump does again, provided that none is under way at either end, however PHASE
-// falls into the bit clock.
+// falls into the bit clock, and that none takes a word that was sent.
 bool ServoChannels::repeats() const {
   catch_up_pwm();
   const unsigned slow = std::max(divider(kDac), divider(kAdc));
-  const bool calm =
-      dac_.idle() && adc_.idle() && (phase_rise_ < marked_ || now_ - phase_rise_ > 26 * (kTicksPerRef << slow));
+  const bool sent = sends_ && sent_from_ > -static_cast<int>(kSerialBits);
+  const bool calm = dac_.idle() && adc_.idle() && !sent &&
+                    (phase_rise_ < marked_ || now_ - phase_rise_ > 26 * (kTicksPerRef << slow));
   return calm && std::all_of(channel_.begin(), channel_.end(),
                              [this](const ServoChannel& c) { return c.repeats(now_ - marked_); });
 }
@@ -248,7 +249,9 @@ bool ServoChannels::repeats() const {
 void ServoChannels::jump(Tick by) {
   catch_up_pwm();
   pwm_now_ += by;
-  for (ServoChannel& channel : channel_) channel.jump(now_, by, by / (now_ - marked_));
+  const Tick periods = by / (now_ - marked_);
+  for (ServoChannel& channel : channel_) channel.jump(now_, by, periods);
+  adc_bits_ += periods * (adc_bits_ - marked_adc_bits_);
   run_ref(now_ + by, false);
   now_ += by;
 }

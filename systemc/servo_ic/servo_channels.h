@@ -158,7 +158,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   std::array<ServoChannel, kChannels> channel_;
   ChannelDivider sclk_, pfm_;
   ChannelStrobe dac_, adc_;
-  std::int64_t adc_streams_ = 0;  // begun so far
+  std::int64_t adc_bits_ = 0, marked_adc_bits_ = 0;  // of the streams begun so far
   // What send_adc() has given, if it has; its first bit is this one of the present stream.
   bool sends_ = false;
   ConverterWords sent_{};

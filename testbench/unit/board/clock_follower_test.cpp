@@ -81,6 +81,10 @@ class Pair {
     lazy.catch_up(history_, now);
     for (ServoIc* ic : {&lazy, &eager}) ic->set_trip(on);
   }
+  void send(const ConverterWords& words) {
+    lazy.catch_up(history_, now);
+    for (ServoIc* ic : {&lazy, &eager}) ic->send_adc(words);
+  }
   // The first difference, in words; "" if there is none.
   std::string compare() {
     lazy.catch_up(history_, now);
@@ -91,6 +95,13 @@ class Pair {
     for (unsigned word = 0; word < 64; ++word)
       if (lazy.read(word >= 32, word % 32) != eager.read(word >= 32, word % 32))
         return std::string(word >= 32 ? "X:" : "Y:") + std::to_string(word % 32) + at;
+    const ServoChannels &c = lazy.channels(), &d = eager.channels();
+    if (c.dac_lines() != d.dac_lines()) return "DAC lines" + at;
+    if (c.adc_stream().clocks != d.adc_stream().clocks) return "falls of ADC_CLK" + at;
+    for (const bool line : {false, true})
+      if (c.adc_lines(line) != d.adc_lines(line)) return "ADC lines" + at;
+    for (unsigned channel = 0; channel < kChannels; ++channel)
+      if (c.pwm_times(channel).balance != d.pwm_times(channel).balance) return "times of the PWM" + at;
     if (lazy.phase() != eager.phase() || lazy.servo() != eager.servo()) return "clocks" + at;
     return "";
   }
@@ -240,8 +251,11 @@ class Life {
         return one_in(3) ? pwm_word() : pair_.write(true, one_in(2) ? 0x0C : 0x14, pick(1u << 24));
       case 7:
         return one_in(2) ? pair_.trip(one_in(2)) : clock_word();
-      default:
-        return;
+      default: {
+        ConverterWords words;
+        for (std::uint32_t& word : words) word = pick(1u << 24);
+        return one_in(2) ? pair_.send(words) : void();
+      }
     }
   }
 

@@ -92,6 +92,31 @@ TEST_F(ChannelSerialLineTest, ANewNumberMovesNoEdgeOfTheBitUnderWay) {
       }
 }
 
+// A converter whose bits begin with the falls of the clock gives 18 bits behind four, whatever the clock's number is
+// from one bit to the next (servo-ic:5/2, servo-ic:5.14/2).
+TEST_F(ChannelSerialLineTest, AConversionGoesOnThroughANewNumber) {
+  constexpr std::uint32_t kWord = 0x2B5D3, kStream = 0xA00000 | kWord << 2 | 1;
+  for (const unsigned before : {3u, 4u, 5u})
+    for (const unsigned after : {2u, 6u})
+      for (const unsigned at : {2u, 7u, 8u, 19u}) {
+        divide(before);
+        rig_.in.phase = false;
+        rig_.ticks(25 * (kTicksPerRef << 6));
+        rig_.in.phase = true;
+        bool last = false;
+        for (unsigned bit = 0; bit < kSerialBits;) {
+          rig_.in.adc_a = kStream >> (23 - bit) & 1;
+          rig_.tick();
+          const bool now = (serial() & kAdcClk) != 0;
+          if (last && !now && ++bit == at) divide(after);
+          last = now;
+        }
+        rig_.in.phase = false;
+        rig_.ticks(20);
+        EXPECT_EQ(rig_.peek(1, words::kAdcA), kWord << 6) << before << " to " << after << " in bit " << at;
+      }
+}
+
 // A reset before the first bit of a stream, in the middle of one, or between a trip and its zeros: all four lines are
 // low at once, and nothing moves until PHASE rises. One rise of PHASE more or less is nothing to that, nor a reset that
 // is over before the next edge of clk_ref.
