@@ -12,7 +12,7 @@
 namespace brick {
 namespace {
 
-constexpr std::uint32_t kCounterMask = 0xFFFFFF, kWord = kX4 | kFine;
+constexpr std::uint32_t kCounterMask = 0xFFFFFF, kFineWord = kX4 | kFine;
 
 struct Place {
   int cell;
@@ -50,18 +50,18 @@ class ChannelFineCompareTest : public ChannelTest {
  protected:
   // Channel 1 at cell 0 with 1/T, channel 2 turns its EQU with each of its counts: pulses of one count every two.
   void start(bool up) {
-    control(1, kWord | kCounterReset);
+    control(1, kFineWord | kCounterReset);
     control(2, kFromChannel1);
     rig_.write(2, words::kCompareA, 0);
     rig_.write(2, words::kCompareB, up ? kCounterMask : 1);
     rig_.write(2, words::kCompareIncrement, 2);
-    control(1, kWord);
+    control(1, kFineWord);
   }
   // Channel 1 with 1/T, in which it comes to rest; channel 2 compares its position.
   void to_the_end_of_cell_4(bool up) {
-    control(1, kWord | kCounterReset);
-    control(2, kWord | kFromChannel1);
-    control(1, kWord);
+    control(1, kFineWord | kCounterReset);
+    control(2, kFineWord | kFromChannel1);
+    control(1, kFineWord);
     steps(1, 4, up, 20 * kSclk);
     rig_.ticks(100 * kSclk);
   }
@@ -141,10 +141,10 @@ TEST_F(ChannelFineCompareTest, EachCompareIsLeftAtTheSclkEdgeThatFindsThePositio
 TEST_F(ChannelFineCompareTest, AChangeOfTheSourceLeavesNothing) {
   for (const bool up : {true, false}) {
     const int way = up ? 1 : -1;
-    control(1, kWord | kCounterReset);
-    control(2, kWord | kCounterReset);
-    control(1, kWord);
-    control(2, kWord);
+    control(1, kFineWord | kCounterReset);
+    control(2, kFineWord | kCounterReset);
+    control(1, kFineWord);
+    control(2, kFineWord);
     steps(1, 24, up);
     steps(2, 4, up);
     rig_.ticks(40 * kSclk);  // until both fractions have reached their end
@@ -155,7 +155,7 @@ TEST_F(ChannelFineCompareTest, AChangeOfTheSourceLeavesNothing) {
         place(2, a, b, 5);
         for (int change = 0; change < 4; ++change) {
           const bool before{equ(2)};
-          control(2, kWord | (change % 2 == 0 ? kFromChannel1 : 0));
+          control(2, kFineWord | (change % 2 == 0 ? kFromChannel1 : 0));
           for (Tick t = 0; t < 8 * kSclk; ++t) {
             rig_.tick();
             ASSERT_EQ(bool{equ(2)}, before) << "cell " << cell << ", change " << change;
@@ -171,7 +171,7 @@ TEST_F(ChannelFineCompareTest, AChangeOfTheSourceLeavesNothing) {
 // left with the count from 5 to 6 upwards, with that from 6 to 5 downwards, and 5 itself with that to 4.
 TEST_F(ChannelFineCompareTest, ASourceWithoutHardware1TIsAtTheBeginningOfItsCell) {
   control(1, kX4 | kCounterReset);
-  control(2, kWord | kFromChannel1);
+  control(2, kFineWord | kFromChannel1);
   control(1, kX4);
   steps(1, 3, true);
   for (const unsigned fraction : {0u, 1u, 2048u, 4095u}) {
@@ -189,15 +189,15 @@ TEST_F(ChannelFineCompareTest, ASourceWithoutHardware1TIsAtTheBeginningOfItsCell
 
 // And the first motion after the change is seen, from where the new source stands.
 TEST_F(ChannelFineCompareTest, TheNewSourceIsFollowedFromWhereItStands) {
-  control(1, kWord | kCounterReset);
-  control(2, kWord | kCounterReset);
-  control(1, kWord);
-  control(2, kWord);
+  control(1, kFineWord | kCounterReset);
+  control(2, kFineWord | kCounterReset);
+  control(1, kFineWord);
+  control(2, kFineWord);
   steps(1, 24, true);
   rig_.ticks(40 * kSclk);
   place(2, {24, 4095}, {10, 0}, 3);
   const bool before{equ(2)};
-  control(2, kWord | kFromChannel1);
+  control(2, kFineWord | kFromChannel1);
   rig_.ticks(2 * kSclk);
   step(1, true);
   EXPECT_NE(bool{equ(2)}, before) << "24 to 25";
@@ -211,14 +211,15 @@ TEST_F(ChannelFineCompareTest, TurningHardware1TOnOrHoldingTheCounterLeavesNothi
     const int way = up ? 1 : -1;
     for (const int cell : {9, 12, 15}) {
       control(1, kX4 | kCounterReset);
-      control(1, kWord);
+      control(1, kFineWord);
       steps(1, 12, up);
       place(1, {100 * way, 2000}, {101 * way, 0}, 0);
       control(1, kX4);
       steps(1, 6, up);
       rig_.write(1, words::kCompareA, static_cast<std::uint32_t>(cell * way) & kCounterMask);
       const bool before{equ(1)};
-      for (const std::uint32_t word : {kWord, kX4, kWord, kWord | kCounterReset, kWord, kWord | kCounterReset, kX4}) {
+      for (const std::uint32_t word :
+           {kFineWord, kX4, kFineWord, kFineWord | kCounterReset, kFineWord, kFineWord | kCounterReset, kX4}) {
         control(1, word);
         rig_.ticks(8 * kSclk);
         EXPECT_EQ(bool{equ(1)}, before) << "control " << std::hex << word << std::dec << ", cell " << cell * way;
@@ -236,7 +237,7 @@ TEST_F(ChannelFineCompareTest, ChangingToMldtAndBackLeavesNothing) {
       to_the_end_of_cell_4(up);
       place(channel, {4 * way, 2048}, {100 * way, 0}, 5);
       const bool before{equ(channel)};
-      for (const std::uint32_t word : {decode_mode(regs::decode::kMldt) | kPfm | kFine, kWord}) {
+      for (const std::uint32_t word : {decode_mode(regs::decode::kMldt) | kPfm | kFine, kFineWord}) {
         control(1, word);
         rig_.ticks(20 * kSclk);
         EXPECT_EQ(bool{equ(channel)}, before) << "channel " << channel << (up ? ", up" : ", down");
@@ -252,7 +253,7 @@ TEST_F(ChannelFineCompareTest, ChangingToMldtAndBackLeavesNothing) {
 TEST_F(ChannelFineCompareTest, WhatIsOverWithinAnSclkPeriodLeavesNothing) {
   constexpr unsigned kEdges = 8;  // of an SCLK period
   constexpr Tick kSlow = kEdges * kTicksPerRef;
-  constexpr std::uint32_t kReset = kWord | kCounterReset, kMldt = decode_mode(regs::decode::kMldt) | kPfm | kFine;
+  constexpr std::uint32_t kReset = kFineWord | kCounterReset, kMldt = decode_mode(regs::decode::kMldt) | kPfm | kFine;
   struct Write {
     unsigned channel;
     std::uint32_t word;
@@ -265,17 +266,25 @@ TEST_F(ChannelFineCompareTest, WhatIsOverWithinAnSclkPeriodLeavesNothing) {
     std::vector<Write> writes;
   };
   const Row rows[] = {
-      {"reset", 1, kFromChannel1, 2, {{1, kReset}, {1, kWord}}},
-      {"MLDT", 1, kFromChannel1, 4, {{1, kMldt}, {1, kWord}}},
-      {"1/T off", 1, kFromChannel1, 4, {{1, kX4}, {1, kWord}}},
-      {"reset of the source", 2, kFromChannel1, 2, {{1, kReset}, {1, kWord}}},
-      {"MLDT of the source", 2, kFromChannel1, 4, {{1, kMldt}, {1, kWord}}},
-      {"1/T of the source off", 2, kFromChannel1, 4, {{1, kX4}, {1, kWord}}},
-      {"reset and away", 2, 0, 2, {{2, kReset | kFromChannel1}, {2, kWord}}},
-      {"MLDT and away", 2, 0, 4, {{2, kMldt | kFromChannel1}, {2, kWord}}},
-      {"away, reset", 2, kFromChannel1, 2, {{2, kWord}, {1, kReset}, {1, kWord}, {2, kWord | kFromChannel1}}},
-      {"away, MLDT", 2, kFromChannel1, 4, {{2, kWord}, {1, kMldt}, {1, kWord}, {2, kWord | kFromChannel1}}},
-      {"away, 1/T off", 2, kFromChannel1, 4, {{2, kWord}, {1, kX4}, {2, kWord | kFromChannel1}, {1, kWord}}},
+      {"reset", 1, kFromChannel1, 2, {{1, kReset}, {1, kFineWord}}},
+      {"MLDT", 1, kFromChannel1, 4, {{1, kMldt}, {1, kFineWord}}},
+      {"1/T off", 1, kFromChannel1, 4, {{1, kX4}, {1, kFineWord}}},
+      {"reset of the source", 2, kFromChannel1, 2, {{1, kReset}, {1, kFineWord}}},
+      {"MLDT of the source", 2, kFromChannel1, 4, {{1, kMldt}, {1, kFineWord}}},
+      {"1/T of the source off", 2, kFromChannel1, 4, {{1, kX4}, {1, kFineWord}}},
+      {"reset and away", 2, 0, 2, {{2, kReset | kFromChannel1}, {2, kFineWord}}},
+      {"MLDT and away", 2, 0, 4, {{2, kMldt | kFromChannel1}, {2, kFineWord}}},
+      {"away, reset",
+       2,
+       kFromChannel1,
+       2,
+       {{2, kFineWord}, {1, kReset}, {1, kFineWord}, {2, kFineWord | kFromChannel1}}},
+      {"away, MLDT", 2, kFromChannel1, 4, {{2, kFineWord}, {1, kMldt}, {1, kFineWord}, {2, kFineWord | kFromChannel1}}},
+      {"away, 1/T off",
+       2,
+       kFromChannel1,
+       4,
+       {{2, kFineWord}, {1, kX4}, {2, kFineWord | kFromChannel1}, {1, kFineWord}}},
   };
   rig_.write(ic_words::kClockControl, ic_words::clock_control::kSclkDivider.set(kServoEachPhase, 3));
   for (const Row& row : rows)
@@ -286,8 +295,8 @@ TEST_F(ChannelFineCompareTest, WhatIsOverWithinAnSclkPeriodLeavesNothing) {
         const unsigned moves = row.source == 0 ? 2 : 1;
         control(1, kReset);
         control(2, kReset);
-        control(1, kWord);
-        control(2, kWord | row.source);
+        control(1, kFineWord);
+        control(2, kFineWord | row.source);
         steps(moves, 4, up, 20 * kSlow);
         rig_.ticks(50 * kSlow);
         place(row.channel, {row.cell * way, 2048}, {100 * way, 0}, 5);
@@ -312,10 +321,10 @@ TEST_F(ChannelFineCompareTest, TurningHardware1TOfTheSourceLeavesNothing) {
     to_the_end_of_cell_4(up);
     place(2, {4 * way, 2048}, {100 * way, 0}, 5);
     const bool before{equ(2)};
-    for (const std::uint32_t word : {kX4, kWord, kX4, kWord}) {
+    for (const std::uint32_t word : {kX4, kFineWord, kX4, kFineWord}) {
       control(1, word);
       rig_.ticks(20 * kSclk);
-      EXPECT_EQ(bool{equ(2)}, before) << (up ? "up" : "down") << (word == kWord ? ", on" : ", off");
+      EXPECT_EQ(bool{equ(2)}, before) << (up ? "up" : "down") << (word == kFineWord ? ", on" : ", off");
     }
     steps(1, 1, up, 20 * kSclk);
     EXPECT_NE(bool{equ(2)}, before) << "behind it motion counts";
@@ -324,13 +333,13 @@ TEST_F(ChannelFineCompareTest, TurningHardware1TOfTheSourceLeavesNothing) {
 
 // Pulses that begin at 0, where the counter was held: the first count up leaves it.
 TEST_F(ChannelFineCompareTest, ACompareAtZeroIsLeftBehindACounterReset) {
-  control(1, kWord | kCounterReset);
-  control(1, kWord);
+  control(1, kFineWord | kCounterReset);
+  control(1, kFineWord);
   steps(1, 4, true, 20 * kSclk);
   rig_.ticks(100 * kSclk);
-  control(1, kWord | kCounterReset);
+  control(1, kFineWord | kCounterReset);
   place(1, {0, 0}, {100, 0}, 5);
-  control(1, kWord);
+  control(1, kFineWord);
   rig_.ticks(8 * kSclk);
   const bool before{equ(1)};
   step(1, true);
@@ -351,20 +360,24 @@ TEST_F(ChannelFineCompareTest, AWriteTakesAwayTheCountThatIsNotFoundYetAndNoOthe
     int lost;
   };
   const Row rows[] = {
-      {"1/T on", 1, kX4, {{1, kWord}}, 0},  // without it the count itself turns EQU
-      {"1/T of the source on", 2, kX4, {{1, kWord}}, kEdges},
-      {"1/T of the source off", 2, kWord, {{1, kX4}}, kEdges},
+      {"1/T on", 1, kX4, {{1, kFineWord}}, 0},  // without it the count itself turns EQU
+      {"1/T of the source on", 2, kX4, {{1, kFineWord}}, kEdges},
+      {"1/T of the source off", 2, kFineWord, {{1, kX4}}, kEdges},
       // one more: channel 2 has no count of its own
-      {"away and back", 2, kWord, {{2, kWord}, {2, kWord | kFromChannel1}}, kEdges + 1},
-      {"1/T off and on", 2, kWord, {{2, kX4 | kFromChannel1}, {2, kWord | kFromChannel1}}, kEdges},
-      {"AENA", 2, kWord, {{2, kWord | kFromChannel1 | field::kAena.mask()}, {1, kWord | field::kAena.mask()}}, 0},
+      {"away and back", 2, kFineWord, {{2, kFineWord}, {2, kFineWord | kFromChannel1}}, kEdges + 1},
+      {"1/T off and on", 2, kFineWord, {{2, kX4 | kFromChannel1}, {2, kFineWord | kFromChannel1}}, kEdges},
+      {"AENA",
+       2,
+       kFineWord,
+       {{2, kFineWord | kFromChannel1 | field::kAena.mask()}, {1, kFineWord | field::kAena.mask()}},
+       0},
   };
   for (const Row& row : rows) {
     int lost = 0;
     for (int n = 0; n < 10 * kEdges; ++n) {
-      control(1, kWord | kCounterReset);
-      control(2, kWord | kFromChannel1);
-      control(1, kWord);
+      control(1, kFineWord | kCounterReset);
+      control(2, kFineWord | kFromChannel1);
+      control(1, kFineWord);
       steps(1, 4, true, 20 * kSclk);
       place(row.channel, {4, 4095}, {100, 0}, 5);
       control(1, row.before);
@@ -383,11 +396,11 @@ TEST_F(ChannelFineCompareTest, AWriteTakesAwayTheCountThatIsNotFoundYetAndNoOthe
 // Channel 2 compares its own position, so that nothing of channel 1 takes its count away, at any edge about it.
 TEST_F(ChannelFineCompareTest, WhatChannel1DoesIsNothingToAPositionOfOnesOwn) {
   constexpr int kEdges = kSclk / kTicksPerRef;
-  for (const std::uint32_t word : {kX4, kWord | kCounterReset, decode_mode(regs::decode::kMldt) | kPfm | kFine}) {
+  for (const std::uint32_t word : {kX4, kFineWord | kCounterReset, decode_mode(regs::decode::kMldt) | kPfm | kFine}) {
     for (int n = 2 * kEdges; n < 5 * kEdges; ++n) {
-      control(1, kWord);
-      control(2, kWord | kCounterReset);
-      control(2, kWord);
+      control(1, kFineWord);
+      control(2, kFineWord | kCounterReset);
+      control(2, kFineWord);
       steps(2, 4, true, 20 * kSclk);
       place(2, {4, 4095}, {100, 0}, 5);
       while (rig_.now() % kSclk != 0) rig_.tick();
