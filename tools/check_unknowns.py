@@ -139,23 +139,40 @@ def read_dump(vcd):
     return found, sum(map(len, names.values())), sum(len(names[code]) for code in moved)
 
 
-def judge(root, top, seed, clocks):
-    """Outputs of a top that are unknown after its reset; says how many were looked at."""
+class Failed(Exception):
+    """Icarus does not run a top."""
+
+
+def look(root, top, seed, clocks, replaced=None):
+    """{output that is unknown after the reset: since when}, how many outputs were looked at, how many have moved.
+    `replaced`: {a file of rtl: its text instead}."""
     listed = (root / f"rtl/{top}.f").read_text().splitlines()
     with tempfile.TemporaryDirectory() as name:
         work, sources = pathlib.Path(name), []
         for line in listed:
             if not line.startswith("//"):  # Icarus 11 evaluates some always_comb without an end, no always @*
+                text = (replaced or {}).get(f"rtl/{line}") or (root / "rtl" / line).read_text()
                 sources.append(work / pathlib.Path(line).name)
-                sources[-1].write_text((root / "rtl" / line).read_text().replace("always_comb", "always @*"))
+                sources[-1].write_text(text.replace("always_comb", "always @*"))
         (work / "tb.sv").write_text(bench(top, (work / f"{top}.sv").read_text(), seed, clocks))
         for command in (["iverilog", "-g2012", "-o", "tb.vvp", "-s", "tb", *sources, "tb.sv"], ["vvp", "-n", "tb.vvp"]):
-            done = subprocess.run(command, cwd=work, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                  stderr=subprocess.STDOUT, timeout=300)
+            try:
+                done = subprocess.run(command, cwd=work, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                      stderr=subprocess.STDOUT, timeout=300)
+            except (OSError, subprocess.TimeoutExpired) as none:
+                raise Failed(f"{top}: {command[0]}: {none}") from none
             if done.returncode != 0:
-                return [f"{top}: {command[0]} ended with {done.returncode}: {done.stdout[-1500:]}"]
+                raise Failed(f"{top}: {command[0]} ended with {done.returncode}: {done.stdout[-1500:]}")
         with (work / "unknowns.vcd").open() as vcd:
-            found, outputs, moved = read_dump(vcd)
+            return read_dump(vcd)
+
+
+def judge(root, top, seed, clocks):
+    """Outputs of a top that are unknown after its reset; says how many were looked at."""
+    try:
+        found, outputs, moved = look(root, top, seed, clocks)
+    except Failed as failed:
+        return [str(failed)]
     print(f"{top}: {outputs} outputs of its modules, {moved} moved")
     still = [f"{top}: {moved} of {outputs} outputs have moved; expected {LEAST[top]:.0%} at least"
              ] if moved < LEAST.get(top, 0) * outputs else []

@@ -37,8 +37,9 @@ and the models of its buses. Number 0 is the source as it is and passes. The fir
 one process it counts when that test fails alone, too (seen of all rows but the model's).
 
 - **score**: killed of killed and alive. A mutant of RTL or of the model stands in that engine alone and every
-  comparison of the two is off: the tests have values of their own, the proof has its rules, and a model that sleeps
-  until its next event shows what it shows when it is kept awake. This holds when both sides misread a rule alike.
+  comparison of the two is off: the tests have values of their own, the proof has its rules, Icarus shows what is
+  unknown behind the reset (`lint.unknowns`), and a model that sleeps until its next event shows what it shows when it
+  is kept awake. This holds when both sides misread a rule alike.
 - **slip**: with lock-step and component tests on what was left: a mistake in one engine alone.
 - **equal**: proved, without a bound, to be the module it was made from, or with it the one around; of C and C++, the
   same object code at -O2; out of the count, another takes its place.

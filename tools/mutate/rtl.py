@@ -1,4 +1,5 @@
-"""Judges the mutants of one RTL module: number 0 first, then each by its tests, filter, proof, boards and lock-step."""
+"""Judges the mutants of one RTL module: number 0 first, then each by its tests, filter, proof, unknown levels, boards
+and lock-step."""
 
 import dataclasses
 import pathlib
@@ -9,6 +10,7 @@ import overlay
 import proofs
 import runner
 import schemata
+import unknowns
 import verilog
 import workplace
 from common import hash_of
@@ -51,7 +53,7 @@ class Judge:
         """A hash of all that decides: the mutated file, the programs as built, the proof, these tools."""
         programs = {t.program for stage in self.stages for t in stage.tests}
         proof = self.root / f"testbench/formal/{self.module.proof}.sv"
-        tools = [*sorted(FOLDER.glob("*.py")), FOLDER.parent / "prove.py"]
+        tools = [*sorted(FOLDER.glob("*.py")), FOLDER.parent / "prove.py", FOLDER.parent / "check_unknowns.py"]
         return hash_of(self.source, *(self.tree / "bin" / p for p in sorted(programs)),
                        proof if self.module.proof else "", repr(self.module), *tools)
 
@@ -130,6 +132,12 @@ class Judge:
         seconds = time.monotonic() - begin
         return Verdict(KILLED, f"proof {self.module.proof}: {rule}", seconds) if rule else Verdict(ALIVE, "", seconds)
 
+    def by_unknowns(self, mutant):
+        begin = time.monotonic()
+        what = unknowns.found(self.root, self.module.file, schemata.single(self.source, mutant).decode())
+        seconds = time.monotonic() - begin
+        return Verdict(KILLED, f"unknowns: {what}", seconds) if what else Verdict(ALIVE, "", seconds)
+
     def again(self, mutant, by):
         """`by`: 'PROGRAM: TEST', which passes with number 0; no other program is built unless it lets the mutant live.
         None: there is no such test now."""
@@ -152,8 +160,8 @@ class Judge:
         counts as alive for the score of misreadings."""
         tests, board, slip = self.stages
         steps = [("tests", lambda: self.by_tests(tests, mutant)), ("filter", lambda: self.by_filter(mutant)),
-                 ("proof", lambda: self.by_proof(mutant)), ("board", lambda: self.by_tests(board, mutant)),
-                 ("slip", lambda: self.by_tests(slip, mutant))]
+                 ("proof", lambda: self.by_proof(mutant)), ("unknowns", lambda: self.by_unknowns(mutant)),
+                 ("board", lambda: self.by_tests(board, mutant)), ("slip", lambda: self.by_tests(slip, mutant))]
         seconds = 0.0
         for name, step in steps:
             verdict = step()

@@ -4,6 +4,7 @@ import shutil
 import subprocess
 import sys
 import unittest
+from unittest import mock
 
 from tree import TOOLS, Tree, run
 
@@ -238,6 +239,20 @@ class Unknowns(Planted):
         done = self.judge("board_top", "host/host_signals.sv",
                           "if (!rst_ni)   latch_q <= brick_regs_pkg::BoardLatchesHostSignalsReset[3:0];\n    else ", "")
         self.expect(done, 1, "board_top: u_core.u_host_signals.rdata_o is unknown at 101, seed 1")
+
+    def test_of_a_mutant_the_first_is_named_and_no_answer_is_none(self):
+        """For `./dev mutate`, in the smallest design that has the file."""
+        sys.path[:0] = [str(TOOLS / "mutate"), str(TOOLS)]
+        import unknowns
+
+        file = "rtl/servo_ic/channel_regs.sv"
+        text = (self.root / file).read_text()
+        line = "      out_a_q   <= brick_regs_pkg::ServoChannelOutAReset;\n"
+        with mock.patch.object(unknowns, "CLOCKS", 600):
+            self.assertRegex(unknowns.found(self.root, file, text.replace(line, "")),
+                             r"^servo_ic: u_channels\.\S+\.u_regs\.out_a_o is unknown at 101$")
+            for other, mutated in ((file, text), (file, "no Verilog"), ("rtl/board/board_sim.sv", "")):
+                self.assertIsNone(unknowns.found(self.root, other, mutated), other)
 
 
 if __name__ == "__main__":

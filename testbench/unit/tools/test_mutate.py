@@ -366,6 +366,7 @@ class Fresh(unittest.TestCase):
     RENEWED = (  # status, stage, what killed it, whether that is there now and judges
         ("killed", "tests", "unit_a: Of.Work", True), ("killed", "tests", "unit_a: All/Of.Each/1", True),
         ("killed", "board", "unit_a: Of.Work", True), ("killed", "proof", "proof pic_8259: R1", True),
+        ("killed", "unknowns", "unknowns: board_top: wdo_o is unknown at 101", True),
         ("killed", "tests", "unit_a: Of.Gone", False), ("killed", "tests", "unit_b: Of.Work", False),
         ("killed", "image", "unit_a: Of.Work", False), ("killed", "slip", "unit_a: Of.Work", False),
         ("killed", "proof", "proof pic_8259: R999", False), ("killed", "proof", "proof dpram: R1", False),
