@@ -91,6 +91,18 @@ TEST_F(ChangingModes, AStopLeavesOutWhatABegunLineWaitsFor) {
   EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
 }
 
+// Statements and jumps between them are no moves: they are executed while the segments before are still to come.
+TEST_F(ChangingModes, StatementsBehindSegmentsDoNotWaitForTheirEnd) {
+  begin("I5113=10 I5120=40 P1=0");
+  store({"LINEAR ABS TM3000 TA20 TS0 X1", "RAPID", "GOTO 5", "N5 P1=1", "X4"});
+  ASSERT_EQ(host("&1B1R"), "");
+  go(150, 30);
+  EXPECT_LT(motors[0].trajectory, 900 * 3072) << "it is on its way yet";
+  EXPECT_EQ(host("P1"), "1");
+  go(4000, 30);
+  EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
+}
+
 // A search for home too.
 TEST_F(ChangingModes, AStopLeavesOutASearchForHome) {
   for (const char* order : {"&1Q", "&1/", "&1S"}) {

@@ -143,6 +143,28 @@ TEST_F(MotionProgram, LetterCodesAreCallsAndReadTakesTheirValues) {
   EXPECT_EQ(q(127), 1500.0);
 }
 
+// firmware:7.3/2: the Nth letter of the alphabet is Q(100 + N) and bit N - 1 of Q100, whatever it is elsewhere; N and O
+// are none.
+TEST_F(MotionProgram, ReadTakesEachLetter) {
+  const std::string letters = "ABCDEFGHIJKLMPQRSTUVWXYZ";
+  std::string call = "G92", list;
+  double mask = 0;
+  for (const char letter : letters) {
+    const unsigned n = static_cast<unsigned>(letter - 'A') + 1;
+    call += std::string(" ") + letter + std::to_string(n + 200);
+    list += (list.empty() ? "" : ",") + std::string(1, letter);
+    mask += static_cast<double>(1u << (n - 1));
+  }
+  store(1000, {"N92000 READ(" + list + ") RET"});
+  run({"Q114=5 Q115=6", call});
+  EXPECT_FALSE(error());
+  for (const char letter : letters)
+    EXPECT_EQ(q(101 + static_cast<unsigned>(letter - 'A')), letter - 'A' + 201) << letter;
+  EXPECT_EQ(q(100), mask);
+  EXPECT_EQ(q(114), 5.0);
+  EXPECT_EQ(q(115), 6.0);
+}
+
 // Two jumps back without a move, or 32 lines, at one real-time interrupt; nothing else waits for them.
 TEST_F(MotionProgram, EndlessLoopsTakeTwoTurnsAnInterrupt) {
   for (const Lines& lines :
