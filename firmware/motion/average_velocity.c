@@ -26,8 +26,7 @@ static __attribute__((noinline)) void sample(uint32_t motor) {
   }
 }
 
-/* I60 is looked at between two samples, so that each has all motors. The call is the last thing: most interrupts need
- * none. */
+/* I60 is looked at between two samples, so that each has all motors. */
 void average_velocity_servo(void) {
   const uint32_t first = turn;
   if (first == 0u) {
@@ -35,7 +34,7 @@ void average_velocity_servo(void) {
     next = (next + 1u) % SAMPLES;
   }
   turn = first + 1u < turns ? first + 1u : 0u;
-  if (first < MOTORS && motors_active >> first != 0u) sample(first);
+  sample(first);
 }
 
 void average_velocity_shift(uint32_t motor, int64_t by) { averages[motor].origin += by; }

@@ -132,7 +132,6 @@ bool axis_matrix_change(uint32_t cs, enum matrix_change change, double q) {
 static double row(const double matrix[ROTATION], uint32_t i, const double vector[N]) {
   double sum = 0.0;
   for (uint32_t k = 0; k < N; k++) sum += multiply(matrix[i * N + k], vector[k]);
-  slice_pause();
   return sum;
 }
 
@@ -150,7 +149,6 @@ static void lead_back(const struct selection* m, double vector[N]) {
 
 static void lead_back_point(const struct selection* m, double point[N]) {
   for (uint32_t i = 0; i < N; i++) point[i] -= m->now.d[i];
-  slice_pause();
   lead_back(m, point);
 }
 

@@ -42,7 +42,6 @@ static double length(const double a[CIRCLE_AXES]) {
 static double hypotenuse(double a, double b) {
   const double square = plus_product(plus_product(0.0, a, a), b, b);
   const double root = square > 0.0 ? math_square_root(square) : 0.0;
-  slice_pause();
   return root;
 }
 
@@ -75,18 +74,14 @@ static enum circle_kind centre_by_radius(const struct circle_line* line, const d
   if (!(size > 0.0)) return CIRCLE_STRAIGHT;
   if (!(radius > 0.0)) return CIRCLE_IMPOSSIBLE;
   go(line->start, 0.5, chord, c->centre);
-  slice_pause();
   const double excess = size - radius - radius;
   c->angle = PI;
   if (excess > 0.0) return line->most > 0.0 && excess > line->most ? CIRCLE_IMPOSSIBLE : CIRCLE_ARC;
   cross(axis, chord, left);
   const double beside = math_square_root(radius * radius - half * half);
-  slice_pause();
   const double height = beside / size;
-  slice_pause();
   c->angle = 2.0 * math_arc_tangent2(half, beside, false);
   if (line->radius < 0.0) c->angle = TURN - c->angle;
-  slice_pause();
   go(c->centre, line->radius > 0.0 ? height : -height, left, c->centre);
   return CIRCLE_ARC;
 }
@@ -127,7 +122,6 @@ static enum circle_kind turn(const struct circle_line* line, const double axis[C
   if (line->by_radius) return CIRCLE_ARC; /* its angle is known */
   const double across = product(to_end, c->second), straight = product(to_end, c->first);
   c->angle = math_arc_tangent2(across, straight, false);
-  slice_pause();
   if (c->angle < 0.0) c->angle += 2.0 * PI;
   if (c->angle < smallest * PI) c->angle += 2.0 * PI;
   return CIRCLE_ARC;
@@ -155,11 +149,9 @@ enum circle_kind circle_of(const struct circle_line* line, struct circle* c) {
 /* d/d(part) in the plane: outwards at the start, and a quarter of a turn on. */
 static void velocity(const struct circle* c, double part, double* outward, double* onward) {
   const double angle = c->angle * part;
-  slice_pause();
   const double now = c->radius + c->growth * part;
   slice_pause();
   const double radius = now * c->angle;
-  slice_pause();
   const double cosine = math_cosine(angle, false), sine = math_sine(angle, false);
   slice_pause();
   *outward = c->growth * cosine - radius * sine;
@@ -177,11 +169,8 @@ static double of_curve(const struct circle* c, double across, double on) {
   double sum = 0.0;
   for (uint32_t i = 0; i <= steps; i++) {
     const double part = (double)i / (double)steps;
-    slice_pause();
     const double radius = c->radius + c->growth * part;
-    slice_pause();
     double outward = c->growth, onward = radius * c->angle;
-    slice_pause();
     if (drifts) {
       const double angle = c->angle * part;
       slice_pause();
@@ -200,10 +189,10 @@ double circle_length(const struct circle* c, double beside[CIRCLE_AXES]) {
   const double mean = c->radius + c->growth * 0.5;
   slice_pause();
   const double round = mean * c->angle;
-  slice_pause();
   const double none = math_scale(round, NO_DRIFT);
   double across = product(c->along, c->first), on = product(c->along, c->second);
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) beside[i] = c->along[i];
+  slice_pause();
   if (math_absolute(across) <= none && math_absolute(on) <= none) {
     if (math_absolute(c->growth) <= math_scale(round, NO_SPIRAL)) return round;
     across = on = 0.0;
@@ -212,7 +201,6 @@ double circle_length(const struct circle* c, double beside[CIRCLE_AXES]) {
     go(beside, -on, c->second, beside);
   }
   const double length = of_curve(c, across, on);
-  slice_pause();
   return length;
 }
 
@@ -222,20 +210,16 @@ void circle_at(const struct circle* c, double part, double position[CIRCLE_AXES]
   const double angle = c->angle * part;
   slice_pause();
   const double radius = c->radius + c->growth * part;
-  slice_pause();
   const double x = radius * math_cosine(angle, false);
-  slice_pause();
   const double y = radius * math_sine(angle, false);
   slice_pause();
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
     double at = c->centre[i];
     if (c->first[i] != 0.0) at += c->first[i] * x;
-    slice_pause();
     if (c->second[i] != 0.0) at += c->second[i] * y;
     slice_pause();
     if (c->along[i] != 0.0) at += c->along[i] * part;
     position[i] = at;
-    slice_pause();
   }
 }
 

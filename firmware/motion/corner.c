@@ -20,7 +20,6 @@ static double cosine(const double before[AXIS_COUNT], const double after[AXIS_CO
   }
   if (first == 0.0 || second == 0.0) return 1.0;
   const double length = math_square_root(first * second);
-  slice_pause();
   return product / length;
 }
 

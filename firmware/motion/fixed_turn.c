@@ -38,7 +38,6 @@ struct fixed_direction fixed_direction_of(int64_t angle) {
   const int64_t radian = product(rest * 128, EIGHTH_TURN);
   const int64_t square = product(radian, radian);
   const int64_t cosine = value(&cosine_series, square), sine = product(value(&sine_series, square), radian);
-  slice_pause();
   switch (quarter) {
     case 0:
       return (struct fixed_direction){cosine, sine};

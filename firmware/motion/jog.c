@@ -33,7 +33,9 @@ static struct jog_motion make(uint32_t motor, enum jog_aim aim, double speed) {
   const double scale = units(motor), fast = speed * scale;
   struct jog_motion request = {.aim = aim, .speed = fast < FASTEST ? fast : FASTEST};
   if (fast < -FASTEST) request.speed = -FASTEST;
+  slice_pause();
   request.limits = limits_of(motor);
+  slice_pause();
   request.capture = capture_make(motor);
   return request;
 }

@@ -89,7 +89,6 @@ static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
 }
 
 static void to_target(struct own_path* path, struct jog_motion* m, double speed) {
-  slice_pause();
   const double distance = (double)(m->target - path->start);
   const struct speed_plan plan = speed_plan_to(&m->limits, speed, distance, math_absolute(m->speed));
   own_path_change(path, &m->limits, speed, plan.speed);
@@ -99,7 +98,6 @@ static void to_target(struct own_path* path, struct jog_motion* m, double speed)
 }
 
 static void build(struct own_path* path, struct jog_motion* m, struct own_path_state from) {
-  slice_pause();
   own_path_begin(path, math_to_integer(from.position + 0.5));
   slice_pause();
   const double fastest = math_absolute(from.speed) + math_absolute(m->speed), least = fastest / LONGEST_CHANGE_MS;
@@ -168,6 +166,7 @@ static void begin_waiting(void) {
 static bool plan(uint32_t motor) {
   struct beginning b;
   for (uint32_t cycles = SERVO_CYCLES_TO_PLAN; cycles <= SERVO_CYCLES_GIVEN_UP; cycles *= 4u) {
+    slice_pause();
     uint32_t state = hal_mask_servo();
     const enum look to_do = look(motor, cycles, &b);
     hal_unmask(state);

@@ -56,9 +56,7 @@ bool kinematics_forward(uint32_t cs, double position[AXIS_COUNT]) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const double counts = (double)commanded(motor) / unit_of(motor);
-    slice_pause();
-    p_variable_write(P_POSITIONS + motor, counts);
+    p_variable_write(P_POSITIONS + motor, (double)commanded(motor) / unit_of(motor));
     slice_pause();
   }
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
@@ -88,18 +86,15 @@ static bool is_solved(uint32_t cs, const double position[AXIS_COUNT]) {
   if (!solved[cs].known) return false;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
     if (solved[cs].position[axis] != position[axis]) return false;
-  slice_pause();
   return true;
 }
 
 /* Of a variable, in units of position; false: more than its words hold, as of what was divided by 0. */
 static bool read_motor(uint32_t motor, uint32_t first, double scale, double* value) {
   const double read = p_variable_read(first + motor);
-  slice_pause();
   const double unit = unit_of(motor);
   slice_pause();
   const double units = read * unit;
-  slice_pause();
   *value = scale == 1.0 ? units : units * scale;
   slice_pause();
   return math_absolute(*value) < LARGEST_POSITION;
@@ -120,11 +115,8 @@ static bool solve(uint32_t cs, const double position[AXIS_COUNT], bool velocity,
   for (uint32_t motor = 0, left = s->inverse_motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     fits = fits && read_motor(motor, P_POSITIONS, 1.0, &at[motor]);
-    slice_pause();
     if (velocity) fits = fits && read_motor(motor, P_VELOCITIES, 1.0 / time_unit, &velocities[motor]);
-    slice_pause();
   }
-  slice_pause();
   if (!fits) s->failure = RUN_TIME_KINEMATIC;
   if (fits) remember(cs, position);
   return fits;
@@ -140,9 +132,7 @@ bool kinematics_inverse_knot(uint32_t cs, const struct knot* knot) {
   if (coordinate_systems[cs].inverse_motors == 0) return true;
   const double time_unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT);
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    const double velocity = knot->velocity[axis] * time_unit;
-    slice_pause();
-    q_variable_write(cs, Q_VELOCITIES + axis, velocity);
+    q_variable_write(cs, Q_VELOCITIES + axis, knot->velocity[axis] * time_unit);
     slice_pause();
   }
   return solve(cs, knot->position, true, time_unit > 0.0 ? time_unit : 1.0);

@@ -53,13 +53,10 @@ static void set_scale(uint32_t motor, double period) {
   double acceleration = system_motor_acceleration(motor);
   slice_pause();
   acceleration *= period;
-  slice_pause();
   acceleration *= period;
   slice_pause();
   const bool limited = acceleration > 0.0;
-  slice_pause();
   double one = limited ? acceleration : velocity > 0.0 ? velocity : 1.0;
-  slice_pause();
   if (velocity > 0.0 && velocity < one) one = velocity;
   int32_t coarse = 0;
   for (; one > 2.0 * SCALE_HALF; coarse++) {
@@ -72,20 +69,15 @@ static void set_scale(uint32_t motor, double period) {
   }
   scales[motor].coarse = coarse;
   scales[motor].before = scales[motor].last = 0;
-  slice_pause();
   const double fastest = math_scale(velocity, -coarse);
-  slice_pause();
   scales[motor].fastest = fastest > (double)STEP_MOST ? 0 : (int32_t)fastest;
-  slice_pause();
   if (velocity > 0.0 && fastest < 1.0) scales[motor].fastest = 1;
   slice_pause();
   acceleration = math_scale(acceleration, -coarse);
-  slice_pause();
   const double inverse = limited ? 1.0 / acceleration : 0.0;
   slice_pause();
   const double mantissa = math_scale(inverse, 32 + BEND_BITS);
   scales[motor].mantissa = !limited ? 0 : mantissa < (double)INT32_MAX ? (int32_t)mantissa : INT32_MAX;
-  slice_pause();
 }
 
 /* Whether there is one. */
@@ -100,11 +92,8 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   const uint32_t wanted = (uint32_t)i_integer(i_cs(cs, ISX20_LOOKAHEAD_LENGTH));
   l->motors = coordinate_systems[cs].motors;
   l->motor_count = count_bits(l->motors);
-  slice_pause();
   lookahead_buffer_open(cs, l->motor_count, &l->buffer);
-  slice_pause();
   const uint32_t room = capacity(&l->buffer);
-  slice_pause();
   if (wanted == 0 || room == 0) return false;
   l->length = wanted < room ? wanted : room;
   if (l->length < LEAST) l->length = LEAST;
@@ -177,7 +166,6 @@ static void set_limits(struct look* l, uint32_t motor, int32_t next, struct look
   if (fastest == 0 || l->added < SPLINE_POINTS - 1u) return;
   const int32_t most = largest(scales[motor].before, step, next);
   if (most <= fastest) return;
-  slice_pause();
   const int32_t cap = cap_of(fastest, most);
   if (cap < segment->cap) segment->cap = cap;
 }

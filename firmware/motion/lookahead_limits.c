@@ -57,12 +57,12 @@ void limits_load_part(const struct lookahead_motor* at, const struct lookahead_m
     for (uint32_t end = 0; end < 2u; end++) {
       const int64_t s = end == 0 ? first : last;
       to->bend[end] = (int32_t)(bend + turn * s / PIECE_PARTS);
+      slice_pause();
       const int64_t pace = at[i].pace + (bend * 2 * PIECE_PARTS + turn * s) * s / (2 * PIECE_PARTS * PIECE_PARTS);
       to->pace[end * 2u] = (int32_t)pace / parts * (PIECE_PARTS / 2);
     }
     to->pace[1] = to->pace[0] + to->bend[0] / 4;
     if (!is_slow(to)) count++;
-    slice_pause();
   }
 }
 
@@ -235,8 +235,8 @@ int32_t limits_least(enum limits_end end, int32_t w, int32_t most) {
     for (uint32_t value = 0; value < VALUES; value++) {
       const struct edge e = edge_of(&motor_parts[i], value);
       if (!raise(end, &e, w, &least)) return -1;
+      slice_pause();
     }
-    slice_pause();
   }
   return least > most ? -1 : least;
 }
@@ -246,7 +246,6 @@ int32_t limits_change(void) {
   for (uint32_t i = 0; i < count; i++)
     for (uint32_t k = 0; k < 3u; k++)
       if (magnitude(motor_parts[i].pace[k]) > largest) largest = magnitude(motor_parts[i].pace[k]);
-  slice_pause();
   return largest == 0 ? INT32_MAX : divide(INSIDE, largest);
 }
 

@@ -302,6 +302,7 @@ static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
 
 bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece) {
   struct look* l = &looks[cs];
+  slice_pause();
   if (l->state == LOOK_STANDS && l->next != LOOKAHEAD_NONE) {
     const enum lookahead_order order = l->next;
     l->next = LOOKAHEAD_NONE;

@@ -53,7 +53,6 @@ static void add(struct own_path* path, double time, double speed, double acceler
   slice_pause();
   const double linear = speed * time;
   const double square = paused(paused(acceleration * time) * time) / 2.0;
-  slice_pause();
   const double cube = paused(paused(paused(jerk * time) * time) * time) / 6.0;
   slice_pause();
   path->exact += linear + square + cube;
@@ -112,7 +111,6 @@ static void add_repeated(struct own_path* path, double speed, uint32_t repeats) 
 
 void own_path_stay(struct own_path* path, double speed, double time) {
   if (!(time > 0.0)) return;
-  slice_pause();
   const uint32_t whole = (uint32_t)math_to_integer(time / STAY_MS);
   if (whole > 0u) {
     add_repeated(path, speed, whole - 1u);
@@ -247,14 +245,12 @@ static double part_of_way(const struct own_path_place* place, double part, doubl
     *rate += warp * left - bulge;
     slice_pause();
     part += bulge * left;
-    slice_pause();
   }
   if (place->from == 0 && place->to == PIECE_PARTS) return part;
   const double share = (double)(place->to - place->from) / (double)PIECE_PARTS;
   slice_pause();
   *rate *= share;
   part *= share;
-  slice_pause();
   return (double)place->from / (double)PIECE_PARTS + part;
 }
 
@@ -278,7 +274,6 @@ static double speed_of_cubic(const struct own_path_place* place, double part, do
   const double of_cube = part * 3.0 * cube;
   slice_pause();
   const double both = 2.0 * square + of_cube;
-  slice_pause();
   const double turn = part * both;
   slice_pause();
   const double slope = rate * ((double)c->linear + turn);
@@ -286,7 +281,6 @@ static double speed_of_cubic(const struct own_path_place* place, double part, do
   const double time = math_scale((double)place->time, -TIME_FRACTION_BITS);
   slice_pause();
   const double speed = slope / time;
-  slice_pause();
   return math_absolute(speed) < STANDS_STILL ? 0.0 : speed;
 }
 
@@ -295,10 +289,11 @@ struct own_path_state own_path_state(const struct own_path_place* place) {
   double rate;
   if (place->elapsed >= place->time) return (struct own_path_state){(double)cubic_end(c), 0.0};
   slice_pause();
-  const double time = (double)place->time, part = part_of_way(place, (double)place->elapsed / time, &rate);
+  const double begun = (double)place->elapsed / (double)place->time;
+  slice_pause();
+  const double part = part_of_way(place, begun, &rate);
   slice_pause();
   const double square = (double)c->square, cube = (double)c->cube;
-  slice_pause();
   const double steep = square + part * cube;
   slice_pause();
   const double bend = part * steep;

@@ -16,7 +16,6 @@ void path_set_time(struct path_move* m, int64_t time) {
 
 void path_set_times(struct path_move* m, double time, double acceleration, double s_curve) {
   path_set_time(m, path_time(time));
-  slice_pause();
   m->acceleration = m->change = path_time(acceleration);
   m->s_curve = path_time(s_curve);
 }
@@ -24,9 +23,7 @@ void path_set_times(struct path_move* m, double time, double acceleration, doubl
 /* S-curves keep their share of a change that is shorter than it should be. */
 static int64_t s_part(const struct path_move* m, int64_t length) {
   if (m->s_curve == 0 || length >= m->acceleration) return m->s_curve;
-  const int64_t part = fixed_ratio(length, m->acceleration);
-  slice_pause();
-  return fixed_share(m->s_curve, part);
+  return fixed_share(m->s_curve, fixed_ratio(length, m->acceleration));
 }
 
 /* Way after `t` of a velocity that rises from 0 to 1 during `length`, with S-parts of `s` at both ends: t^3 / (6 s (l -
@@ -42,7 +39,6 @@ static int64_t risen(int64_t t, int64_t length, int64_t s) {
   slice_pause();
   if (t < s) {
     const int64_t square = fixed_share(t, part), cube = fixed_share(square, fixed_ratio(t, s));
-    slice_pause();
     return cube / 6;
   }
   return fixed_share(s, fixed_part_of(&by, s)) / 6 + fixed_share(t - s, part) / 2;

@@ -69,7 +69,6 @@ static int64_t radius_in(uint32_t motor, const double direction[CIRCLE_AXES], do
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) velocity[AXIS_X + i] = direction[i];
   slice_pause();
   double value = system_motor_velocity_at(motor, velocity);
-  slice_pause();
   value *= radius;
   slice_pause();
   return math_to_integer(value + 0.5);
@@ -90,12 +89,10 @@ static double set_arc(uint32_t cs, uint32_t place, const struct circle* c) {
   const double angle = c->angle / TWO_PI;
   slice_pause();
   arcs[cs][place].angle = math_to_integer(math_scale(angle, FIXED_TURN_BITS));
-  slice_pause();
   const double growth = c->growth / largest;
   slice_pause();
   arcs[cs][place].growth = math_to_integer(math_scale(growth, 62));
   arcs[cs][place].from = c->growth > 0.0 ? PATH_WHOLE - arcs[cs][place].growth : PATH_WHOLE;
-  slice_pause();
   return largest;
 }
 
@@ -127,7 +124,6 @@ void path_motors_join(uint32_t cs, uint32_t ahead) {
     if ((left & 1u) == 0) continue;
     struct way *ways = motors_of_path[motor].ways, *way = &ways[place];
     const double position = system_motor_at(motor, m->end);
-    slice_pause();
     way->end = math_nearest(position);
     way->whole = way->end - (ahead == 0 ? motors_of_path[motor].start : ways[place_of(&paths[cs], ahead - 1u)].end);
     way->turns = false;
@@ -169,7 +165,6 @@ void path_motors_look(uint32_t cs, const struct path_point* point) {
     if (part == PATH_WHOLE || !path_of(&paths[cs], i)->is_arc) continue;
     slice_pause();
     at.moves[n].turned = turned_of(&arcs[cs][place], part);
-    slice_pause();
   }
 }
 
@@ -181,11 +176,9 @@ static __attribute__((noinline)) int64_t on_arc(const struct way* way, uint32_t 
 
 static __attribute__((noinline)) int64_t by_program(uint32_t motor) {
   const int64_t aside = motors_of_path[motor].start;
-  slice_pause();
   const double position = system_motor_solved(motor);
   slice_pause();
   const int64_t nearest = math_nearest(position);
-  slice_pause();
   if (aside == 0) return nearest;
   return nearest + aside - (at.count == 0 ? 0 : fixed_share(aside, at.moves[0].part));
 }

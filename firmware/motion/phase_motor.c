@@ -47,8 +47,7 @@ static double real(uint32_t motor, enum i_real_name name) {
 /* 2^(31+k) / cycle, rounded up, with 2^k <= cycle < 2^(k+1): the position, less than half a cycle, fits with k bits. */
 static void resolve_cycle(struct phase_settings* s, uint32_t counts) {
   const uint32_t cycle = counts == 0u ? REGISTER_CYCLE : counts;
-  uint32_t k = 0;
-  while (cycle >> k > 1u) ++k;
+  const uint32_t k = 31u - (uint32_t)__builtin_clz(cycle);
   const uint64_t reciprocal = ((1ull << (31u + k)) + cycle - 1u) / cycle;
   s->reciprocal = reciprocal > INT32_MAX ? INT32_MAX : (int32_t)reciprocal;
   s->shift = 31u - k;

@@ -66,7 +66,8 @@ static inline int32_t follow(const struct phase_motor* m, uint32_t words) {
 
 static inline void commutate(struct phase_motor* m, uint32_t words) {
   const int32_t position = follow(m, words);
-  const uint32_t angle = (m->held ? 0u : phase_angle(&m->settings, position)) + m->advance;
+  uint32_t angle = m->advance;
+  if (!m->held) angle += phase_angle(&m->settings, position);
   if (m->settings.current_loop)
     current_loop(m, angle, words);
   else

@@ -75,7 +75,6 @@ static void add_change(const struct motor_move* before, const struct motor_move*
     first[motor] = before == 0 ? 0.0 : before[motor].velocity * time;
     slice_pause();
     change[motor] = (after == 0 ? 0.0 : after[motor].velocity * time) - first[motor];
-    slice_pause();
   }
   for (uint32_t i = 0; i < count; i++) {
     begin_piece(parts[i].time, mask, move);
@@ -263,9 +262,7 @@ static void find_knot(uint32_t cs, const struct move* next, uint32_t i, bool con
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     found->at[motor] = i == 0 ? system_motor_from(motor, knot->position) : system_motor_at(motor, knot->position);
-    slice_pause();
     found->velocity[motor] = rests ? 0.0 : system_motor_velocity_at(motor, knot->velocity);
-    slice_pause();
   }
   if (runs_on) run_on(&ends[1], found, milliseconds(next->knot_time[1]));
 }
@@ -275,7 +272,6 @@ static void add_knots(uint32_t motor, uint32_t i, double time) {
   const struct knot_of_motors *first = &ends[i & 1u], *second = &ends[(i + 1u) & 1u];
   const double to = second->at[motor], way = to - first->at[motor];
   const double v0 = first->velocity[motor] * time;
-  slice_pause();
   const double v1 = second->velocity[motor] * time;
   slice_pause();
   add_cubic(motor, to, 3.0 * way - v0 - v0 - v1, v0 + v1 - way - way);
@@ -335,7 +331,6 @@ static void begin_splines(uint32_t cs, const struct move* next, struct spline_mo
     if ((left & 1u) == 0) continue;
     const int64_t from = math_nearest(system_motor_from(motor, next->start));
     begun[motor] = (struct spline_motor){.point = from, .knot = from};
-    slice_pause();
   }
 }
 
@@ -354,10 +349,8 @@ static bool place_spline(uint32_t cs, struct move* next, uint32_t index, uint32_
     if ((left & 1u) == 0) continue;
     struct cubic cubics[SPLINE_PIECES];
     const int64_t point = math_nearest(system_motor_at(motor, s->position));
-    slice_pause();
     splines[index][motor] = spline_motor_point(&before[motor], point, share, cubics);
     for (uint32_t i = 0; i < SPLINE_PIECES; i++) *piece_ring_cubic(&s->ring, next->straight + i, motor) = cubics[i];
-    slice_pause();
   }
   return go_on(next, continues);
 }

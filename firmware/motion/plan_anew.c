@@ -71,13 +71,11 @@ static uint32_t shift_axis(uint32_t cs, uint32_t axis, double shift) {
 static void set_time(uint32_t cs, struct path_move* m) {
   const int64_t least = m->acceleration > 0 ? m->acceleration : path_time(PATH_LEAST_MS);
   double time;
-  slice_pause();
   if (m->timed) return;
   if (!plan_path_time(m, &time)) {
     coordinate_systems[cs].failure = RUN_TIME_FEEDRATE;
     return;
   }
-  slice_pause();
   const int64_t wanted = path_time(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS);
   path_set_time(m, wanted > least ? wanted : least);
 }
@@ -88,7 +86,6 @@ static void judge_corner(uint32_t cs, uint32_t ahead) {
   struct path_move* m = path_of(&paths[cs], ahead);
   if (!m->joins && !m->sharp) return;
   path_direction(path_of(&paths[cs], ahead - 1u), 1.0, before);
-  slice_pause();
   path_direction(m, 0.0, after);
   slice_pause();
   m->sharp = corner_is_sharp(cs, before, after, &m->dwells);

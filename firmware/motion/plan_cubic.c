@@ -14,7 +14,6 @@ static int64_t cubic_time(uint32_t cs) {
   double time =
       i_integer(I42_PVT_TIME_SOURCE) != 0 ? cs_variable(cs, ISX87_ACCELERATION_TIME) : cs_real(cs, ISX89_FEEDRATE);
   if (time > LONGEST_MS) time = LONGEST_MS;
-  slice_pause();
   const double steps = math_floor(time * STEPS_A_MS + 0.5);
   slice_pause();
   const int64_t units = plan_units(steps / STEPS_A_MS);
@@ -50,7 +49,6 @@ void plan_pvt(uint32_t cs) {
     if (velocity == 0.0) continue;
     m->overruns = s->motors != 0;
     m->knots[2].position[axis] += velocity * OVERRUN_MS;
-    slice_pause();
   }
   m->knot_count = m->overruns ? 3 : 2;
   plan_finish(cs, m, true, target);

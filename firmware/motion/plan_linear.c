@@ -40,7 +40,6 @@ bool plan_feed_time(const struct feedrate* f, const double delta[AXIS_COUNT], do
   }
   slice_pause();
   double length = axes == 1 ? single : math_square_root(square);
-  slice_pause();
   *time = length / f->feed * f->unit;
   slice_pause();
   if (!follows) *time = plan_larger(*time, other / f->alternate * f->unit);
@@ -61,22 +60,18 @@ static struct limits motor_limits(uint32_t cs, const double target[AXIS_COUNT]) 
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     moves[motor].from = system_motor_from(motor, s->position);
-    slice_pause();
   }
   system_motors_solve(cs, target);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     moves[motor].to = system_motor_at(motor, target);
-    slice_pause();
     const double distance = math_absolute(moves[motor].to - moves[motor].from);
     moves[motor].velocity = 0.0;
     if (distance == 0.0) continue;
     const double velocity = system_motor_velocity(motor), acceleration = system_motor_acceleration(motor);
     slice_pause();
     if (velocity > 0.0) found.least = plan_larger(found.least, distance / velocity);
-    slice_pause();
     if (acceleration > 0.0) found.square = plan_larger(found.square, distance / acceleration);
-    slice_pause();
   }
   return found;
 }
@@ -98,18 +93,15 @@ static void set_times(uint32_t cs, struct move* m, double milliseconds, const st
   slice_pause();
   double ts = cs_variable(cs, ISX88_S_CURVE_TIME);
   m->acceleration = plan_units(plan_larger(cs_variable(cs, ISX87_ACCELERATION_TIME), 2.0 * ts)) & ~INT64_C(1);
-  slice_pause();
   m->s_curve = plan_units(ts);
   milliseconds = plan_larger(milliseconds, limits->least);
   if (limits->square > 0.0) {
     const double root = math_square_root(ts * ts + 4.0 * limits->square);
     milliseconds = plan_larger(milliseconds, (ts + root) / 2.0);
   }
-  slice_pause();
   m->time = plan_units(milliseconds);
   int64_t least = m->acceleration > 0 ? m->acceleration : MOVE_MINIMUM_UNITS;
   if (m->time < least) m->time = least;
-  slice_pause();
   m->stop_length = m->acceleration;
   if (limits->square > 0.0) {
     const double time = plan_milliseconds(m->time);
@@ -126,7 +118,6 @@ bool plan_linear(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   double time, target[AXIS_COUNT];
   struct move* m = plan_begin(cs, MOVE_LINEAR);
-  slice_pause();
   plan_targets(cs, m, target);
   const struct feedrate feedrate = plan_feedrate(cs, 0.0);
   if (s->time_mode)
@@ -157,7 +148,7 @@ static void dwell(uint32_t cs, double milliseconds) {
 }
 
 void plan_wait(uint32_t cs, enum rate kind, double milliseconds) {
-  const double length = milliseconds > 0.0 ? milliseconds : 0.0;
+  const double length = plan_larger(milliseconds, 0.0);
   if (kind == RATE_DWELL)
     dwell(cs, length);
   else

@@ -32,21 +32,18 @@ static uint32_t set_goals(uint32_t cs, const double target[AXIS_COUNT], double* 
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     goals[motor].from = math_nearest(system_motor_from(motor, s->position));
-    slice_pause();
   }
   system_motors_solve(cs, target);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     const int64_t from = goals[motor].from;
     goals[motor].target = math_nearest(system_motor_at(motor, target));
-    slice_pause();
     goals[motor].searches = system_motor_behind(motor, s->pending_triggers, s->pending_trigger, &goals[motor].beyond);
     slice_pause();
     if (goals[motor].target == from && !goals[motor].searches) continue;
     moving |= 1u << motor;
     goals[motor].speed = rapid_speed(motor);
     const double way = math_absolute(system_motor_counts(motor, goals[motor].target - from));
-    slice_pause();
     if (goals[motor].speed > 0.0) *longest = plan_larger(*longest, way / goals[motor].speed);
     slice_pause();
   }
@@ -59,7 +56,6 @@ static void stretch(uint32_t cs, uint32_t moving, double longest) {
   for (uint32_t motor = 0, left = moving; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     const double way = math_absolute(system_motor_counts(motor, goals[motor].target - goals[motor].from));
-    slice_pause();
     if (way > 0.0) goals[motor].speed = way / longest;
     slice_pause();
   }
@@ -98,6 +94,9 @@ static void begin(const struct move* m, uint32_t motor) {
 void plan_own_begin(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const struct move* m = &s->moves[s->executing ^ 1u];
-  for (uint32_t motor = 0, left = m->own; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0) begin(m, motor);
+  for (uint32_t motor = 0, left = m->own; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    begin(m, motor);
+    slice_pause();
+  }
 }

@@ -53,7 +53,6 @@ static void arc_ways(const struct path_move* m, double way[AXIS_COUNT]) {
     if (!counted && ((axes >> axis & 1u) != 0 || ((axes & AXIS_XYZ) == 0 && i == 0))) {
       if (way[axis] != 0.0) {
         const double of_arc = length * length;
-        slice_pause();
         const double square = of_arc + way[axis] * way[axis];
         slice_pause();
         way[axis] = math_square_root(square);
@@ -76,14 +75,12 @@ bool plan_path_time(const struct path_move* m, double* time) {
   double way[AXIS_COUNT];
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) way[axis] = m->delta[axis];
   if (m->is_arc) arc_ways(m, way);
-  slice_pause();
   return plan_feed_time(&m->feedrate, way, time);
 }
 
 static void set_times(uint32_t cs, struct path_move* m, double time) {
   const double s_curve = cs_variable(cs, ISX88_S_CURVE_TIME);
   const double acceleration = plan_larger(cs_variable(cs, ISX87_ACCELERATION_TIME), s_curve + s_curve);
-  slice_pause();
   time = plan_larger(time, acceleration > 0.0 ? acceleration : PATH_LEAST_MS);
   path_set_times(m, time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS, acceleration, s_curve);
 }
@@ -140,7 +137,6 @@ enum run_time_error plan_path(uint32_t cs) {
   }
   set_times(cs, m, time);
   set_corner(cs, m);
-  slice_pause();
   push(cs, m);
   return RUN_TIME_NONE;
 }
@@ -155,6 +151,5 @@ void plan_path_delay(uint32_t cs, double milliseconds) {
   m->absolute = 0;
   m->dwells = true;
   set_times(cs, m, milliseconds);
-  slice_pause();
   push(cs, m);
 }

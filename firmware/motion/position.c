@@ -14,7 +14,6 @@ static double rise(double t, double length, double s) {
   slice_pause();
   if (t < s) {
     double cube = slope * t * t * t;
-    slice_pause();
     return cube / (6.0 * s);
   }
   double straight = t - s, begun = s * s / 6.0;
@@ -45,7 +44,6 @@ static void way_point(const struct move* m, uint32_t i, uint32_t axis, double* p
   const int64_t both = i == 0 ? m->time_ahead + m->knot_time[0] : m->knot_time[i - 1u] + m->time;
   slice_pause();
   *position = at + (back + ahead) / 6.0;
-  slice_pause();
   *velocity = (ahead - back) / math_scale((double)both, -TRAJECTORY_FRACTION_BITS);
   slice_pause();
 }
@@ -66,6 +64,7 @@ static void on_cubics(const struct move* m, int64_t elapsed, double position[AXI
   const double time = math_scale((double)m->knot_time[i], -TRAJECTORY_FRACTION_BITS);
   const double u = elapsed < m->knot_time[i] ? (double)elapsed / (double)m->knot_time[i] : 1.0;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    slice_pause();
     double from, to, first, second;
     knot_of(m, i, axis, &from, &first);
     knot_of(m, i + 1u, axis, &to, &second);
@@ -73,11 +72,9 @@ static void on_cubics(const struct move* m, int64_t elapsed, double position[AXI
     position[axis] = from;
     if (way == 0.0 && first == 0.0 && second == 0.0) continue;
     const double v0 = first * time, v1 = second * time;
-    slice_pause();
     const double cube = (v0 + v1 - way - way) * u;
     slice_pause();
     position[axis] += (v0 + (3.0 * way - v0 - v0 - v1 + cube) * u) * u;
-    slice_pause();
   }
 }
 
@@ -86,20 +83,16 @@ static void on_line(const struct coordinate_system* s, double position[AXIS_COUN
   const bool goes_on = s->next_valid && s->placed && next->blended;
   double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)m->stop_length, half = in / 2.0;
   double time = (double)m->time, stop = t - (half + time - out / 2.0);
-  slice_pause();
   double begun = rise(t, in, s_part(m, in));
   slice_pause();
   double ended = goes_on ? 0.0 : rise(stop, out, s_part(m, out));
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     slice_pause();
     double before = m->blended ? velocity(m->delta_before[axis], (double)m->time_before) : 0.0;
-    slice_pause();
     double now = velocity(m->delta[axis], time);
     position[axis] = m->start[axis];
     if (before == 0.0 && now == 0.0) continue;
-    slice_pause();
     double x = m->start[axis] + before * (t - half) + (now - before) * begun;
-    slice_pause();
     position[axis] = x - now * ended;
   }
 }

@@ -210,7 +210,8 @@ static int64_t pid(const struct motor* m, struct loop* l, int64_t step) {
 static void close_loop(uint32_t motor, struct motor* m, struct loop* l) {
   const int64_t step = clamp(m->commanded - m->closed_at, STEP_MOST), finer = pid(m, l, step);
   int64_t output = (notch_is_used(motor) ? notch(motor, finer) : finer) >> NOTCH_FINER;
-  if (step != 0) output += step > 0 ? l->friction : -l->friction;
+  if (step > 0) output += l->friction;
+  if (step < 0) output -= l->friction;
   if ((compensation_of_torque >> motor & 1u) != 0u) output += compensation_torque(motor, output);
   put_out(m, l, output);
   l->filtered = finer;

@@ -22,6 +22,5 @@ double rollover_target(uint32_t motor, double from, double to, bool negative) {
   if (turn > 0.0) return from + shortest(to - from, turn);
   const double near = math_absolute(shortest(to - from, -turn));
   if (near * BAND_UNITS < i_variable_read(i_motor(motor + 1u, IXX28_IN_POSITION_BAND))) return from;
-  slice_pause();
   return negative ? from - math_modulo(from - to, -turn) : from + math_modulo(to - from, -turn);
 }

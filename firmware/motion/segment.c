@@ -131,7 +131,6 @@ static bool go_ahead(uint32_t cs, bool alone) {
   if (room && release(cs, false)) return true;
   /* a long sweep is not waited for: what the one before it has found still holds */
   if (q->handed && ahead <= (q->least + 1u) / 2u && lookahead_is_sweeping(cs)) {
-    slice_pause();
     if (release(cs, true)) return true;
   }
   if (lookahead_sweep(cs, false)) return true;

@@ -24,7 +24,11 @@ static void add_points(uint32_t cs, const struct path_point* point) {
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     int64_t* points = segment_control[motor];
-    for (uint32_t i = 0; !looks && i + 1u < SPLINE_POINTS; i++) points[i] = points[i + 1u];
+    if (!looks) {
+      points[0] = points[1];
+      points[1] = points[2];
+      points[2] = points[3];
+    }
     points[SPLINE_POINTS - 1] = path_motor_at(motor);
     slice_pause();
   }
@@ -87,7 +91,6 @@ bool segment_points_begin(uint32_t cs) {
   q->looks = false;
   for (uint32_t i = 0; i < LAST_POINTS; i++) add_points(cs, &(struct path_point){.count = 0});
   system_motors_come_along(cs);
-  slice_pause();
   path_of(&paths[cs], 0)->change = path_of(&paths[cs], 0)->acceleration; /* it blends with nothing before it now */
   q->time = path_begins(&paths[cs], 0);
   set_move(cs, 0);
@@ -161,7 +164,6 @@ static enum decision decide(uint32_t cs, int64_t time, bool starving) {
   const struct path_move* m = path_of(p, q->joined - 1u);
   if (time <= path_corner(p, q->joined - 1u) + m->change / 2) return GOES_ON;
   if (is_last(cs) || s->quit || !s->running || !s->may_join) return ENDS;
-  slice_pause();
   if (starving) q->late = true;
   if (!q->late) return WAITS;
   const int64_t stop = path_corner(p, q->joined);
@@ -204,7 +206,6 @@ static void make_point(uint32_t cs, int64_t time, uint32_t override) {
   struct path_point point;
   slice_pause();
   path_at(p, (struct path_reach){q->joined, q->ends}, time, &point);
-  slice_pause();
   add_points(cs, &point);
   uint32_t ahead = 0;
   while (ahead + 1u < q->joined && time >= path_begins(p, ahead + 1u)) ahead++;
@@ -223,7 +224,6 @@ static void leave_out(uint32_t cs) {
 
 bool segment_points_make(uint32_t cs, bool starving) {
   struct sequence* q = &sequences[cs];
-  slice_pause();
   leave_out(cs);
   join(cs);
   slice_pause();

@@ -28,7 +28,6 @@ uint32_t segment_ring_lasts(uint32_t cs, uint32_t enough) {
     else
       time += piece_ring_at(ring, number++)->time;
   }
-  slice_pause();
   return segments;
 }
 

@@ -19,7 +19,6 @@ double speed_change_time(const struct speed_limits* l, double from, double to) {
   if (from == to) return 0.0;
   slice_pause();
   const double needed = math_divide(math_absolute(to - from), l->acceleration) + l->s_curve;
-  slice_pause();
   return needed < LONGEST_MS ? larger(l->shortest, needed) : LONGEST_MS;
 }
 
@@ -46,9 +45,7 @@ static double peak_speed(const struct speed_limits* l, double from, double dista
   const double slow = l->acceleration * (l->shortest - l->s_curve); /* changes up to it last `shortest` */
   slice_pause();
   const double begin = from > 0.0 ? from : 0.0, first = from + slow > begin ? from + slow : begin;
-  slice_pause();
   const bool second_slow = slow <= begin ? false : distance <= shortest_distance(l, from, slow);
-  slice_pause();
   const bool first_slow = first <= begin ? false : distance <= shortest_distance(l, from, first);
   slice_pause();
   const double time = (first_slow ? l->shortest : l->s_curve) / 2.0;
@@ -71,9 +68,7 @@ static double peak_speed(const struct speed_limits* l, double from, double dista
   const double product = 4.0 * square * rest;
   slice_pause();
   const double inside = linear * linear - product;
-  slice_pause();
   const double root = math_square_root(larger(inside, 0.0));
-  slice_pause();
   const double below = linear + root;
   slice_pause();
   const double speed = -2.0 * rest / below;
@@ -83,7 +78,6 @@ static double peak_speed(const struct speed_limits* l, double from, double dista
 
 /* At `speed` as long as the rest of a distance takes. */
 static struct speed_plan stay_for(double speed, double rest) {
-  slice_pause();
   const struct speed_plan plan = {speed, rest / speed};
   slice_pause();
   return plan;
@@ -94,13 +88,10 @@ static struct speed_plan plan_forward(const struct speed_limits* l, double from,
   const double at_top = shortest_distance(l, from, top);
   slice_pause();
   if (distance >= at_top) return stay_for(top, distance - at_top);
-  slice_pause();
   /* Too near to change the speed and back: it is kept until it is time to stop. */
   if (from > 0.0) {
     const double stop = change_distance(l, from, 0.0);
-    slice_pause();
     const double kept = from * l->shortest;
-    slice_pause();
     if (from >= top || distance < stop + kept) return stay_for(from, distance - stop);
   }
   return (struct speed_plan){peak_speed(l, from, distance), 0.0};
@@ -108,7 +99,6 @@ static struct speed_plan plan_forward(const struct speed_limits* l, double from,
 
 struct speed_plan speed_plan_to(const struct speed_limits* l, double from, double distance, double top) {
   const double beyond = distance - change_distance(l, from, 0.0);
-  slice_pause();
   if (math_absolute(beyond) < 0.5 || !(top > 0.0)) return (struct speed_plan){0.0, 0.0};
   if (beyond > 0.0) return plan_forward(l, from, distance, top);
   const struct speed_plan mirrored = plan_forward(l, -from, -distance, top);

@@ -41,7 +41,6 @@ static void resolve(uint32_t motor) {
     const uint32_t i = maps[motor].count++;
     maps[motor].axis[i] = (uint8_t)axis;
     maps[motor].scale[i] = d->scale[axis] * maps[motor].unit;
-    slice_pause();
   }
 }
 
@@ -52,7 +51,6 @@ void system_motors_resolve(uint32_t cs) {
     if (!d->assigned || d->cs != cs) continue;
     *(d->kinematic ? &by_program : &mask) |= 1u << motor;
     resolve(motor);
-    slice_pause();
   }
   coordinate_systems[cs].motors = mask | kinematics_resolve(cs, by_program);
 }
@@ -70,11 +68,11 @@ double system_motor_solved(uint32_t motor) {
 }
 
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
+  slice_pause();
   if (maps[motor].by_program) return system_motor_solved(motor);
   const int64_t bias = bias_of(motor);
   double sum = maps[motor].offset;
   if (bias != 0) sum -= (double)bias;
-  slice_pause();
   for (uint32_t i = 0; i < maps[motor].count; i++) {
     sum += maps[motor].scale[i] * position[maps[motor].axis[i]];
     slice_pause();
@@ -103,13 +101,10 @@ double system_motors_turn(uint32_t cs, uint32_t axis, double from, double target
     if (i_variable_read(i_motor_real(motor + 1u, IXX27_ROLLOVER)) == 0.0) return target;
     slice_pause();
     const double scale = math_absolute(axis_definitions[motor].scale[axis]); /* directions are those of the axis */
-    slice_pause();
     const double counts = from * scale;
-    slice_pause();
     const double told = target * scale;
     slice_pause();
     const double turned = rollover_target(motor, counts, told, target < 0.0);
-    slice_pause();
     const double place = turned / scale;
     slice_pause();
     return place;
@@ -144,7 +139,6 @@ bool system_motor_behind(uint32_t motor, uint32_t axes, const double distance[AX
     if (((axes >> axis) & 1u) == 0) continue;
     any = true;
     sum += maps[motor].scale[i] * distance[axis];
-    slice_pause();
   }
   *behind = math_nearest(sum);
   return any;
@@ -195,9 +189,10 @@ static void add_equation(struct equations* e, uint32_t motor) {
     row[e->pivot[k]] = 0.0;
   }
   uint32_t pivot = 0;
-  for (uint32_t axis = 1; axis < AXIS_COUNT; axis++)
+  for (uint32_t axis = 1; axis < AXIS_COUNT; axis++) {
     if (math_absolute(row[axis]) > math_absolute(row[pivot])) pivot = axis;
-  slice_pause();
+    slice_pause();
+  }
   if (!(math_absolute(row[pivot]) > largest * LEAST_PIVOT)) return;
   const double by = row[pivot];
   for (uint32_t column = 0; column <= AXIS_COUNT; column++) {
@@ -212,9 +207,9 @@ static void solve(const struct equations* e, double position[AXIS_COUNT]) {
   for (uint32_t k = e->count; k-- > 0;) {
     double value = e->row[k][AXIS_COUNT];
     for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+      slice_pause();
       if (axis == e->pivot[k] || e->row[k][axis] == 0.0) continue;
       value -= e->row[k][axis] * position[axis];
-      slice_pause();
     }
     position[e->pivot[k]] = value;
   }

@@ -13,7 +13,6 @@ uint32_t velocity_change(int64_t length, int64_t s_curve, struct velocity_part p
   const double s = (double)curve / (double)length;
   slice_pause();
   const double peak = 1.0 / (1.0 - s), bend = peak * s * s;
-  slice_pause();
   const int64_t constant = length - 2 * curve;
   uint32_t count = 0;
   parts[count++] = (struct velocity_part){curve, s, bend / 6.0, 0.0, bend / 6.0};
@@ -24,6 +23,5 @@ uint32_t velocity_change(int64_t length, int64_t s_curve, struct velocity_part p
     slice_pause();
   }
   parts[count++] = (struct velocity_part){curve, 1.0, 0.5, bend / 2.0, -bend / 6.0};
-  slice_pause();
   return count;
 }

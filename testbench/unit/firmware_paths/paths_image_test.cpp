@@ -105,6 +105,25 @@ TEST_F(PathsImage, WhatWaitsPausesInTime) {
   EXPECT_LE(own.longest(), 500u) << own.longest_at();
 }
 
+// Stops on the path, ways back, an override that changes, a jog from a part of a segment that changes its speed. What
+// an order takes back goes in one piece.
+TEST_F(PathsImage, OrdersPauseInTime) {
+  start(54, "0.06", kSmooth);
+  OwnCycles own(board, std::vector<std::string>{"segment_work", "jog_plan"}, "lookahead_add", "limits_reach");
+  board.run_ms(100);
+  for (const char* order : {"I5115=-.4 I5116=.01", "\\", "<", "\\", ">", "I5115=.3 I116=20"}) {
+    accepted(std::string("&1") + order);
+    board.run_ms(60);
+  }
+  accepted("\\");
+  board.run_ms(4);
+  accepted("A");
+  board.run_ms(50);
+  accepted("I116=20 B1R");  // its own limit now
+  board.run_ms(100);
+  EXPECT_LE(own.longest(), 600u) << own.longest_at();
+}
+
 TEST_F(PathsImage, ASegmentOfEightAxesWithCorners) {
   start(54, "1", kCorners);
   OwnCycles own(board, "segment_work", "lookahead_add", "limits_reach");

@@ -1,22 +1,27 @@
 // What work of the planner costs on the image.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "systemc/cpu/elf_file.h"
 #include "testbench/unit/firmware_platform/image_board.h"
 
 namespace brick {
 
-// Own cycles of one function with all that it calls on the stack of slices, interrupts above it taken off; how often
-// `point` is reached in it, and `step`.
+// Own cycles of functions with all that they call on the stack of slices, interrupts above it taken off; how often
+// `point` is reached in them, and `step`.
 class OwnCycles {
  public:
   OwnCycles(ImageBoard& board, const std::string& function, const std::string& point, const std::string& step = "")
+      : OwnCycles(board, std::vector<std::string>{function}, point, step) {}
+  OwnCycles(ImageBoard& board, const std::vector<std::string>& functions, const std::string& point,
+            const std::string& step = "")
       : board_(board), elf_(firmware_image()) {
-    begin_ = *elf_.symbol(function);
-    pause_ = *elf_.symbol("slice_pause");
+    for (const std::string& function : functions) begin_.push_back(*elf_.symbol(function));
+    pause_ = *elf_.symbol("slice_pause"), round_ = *elf_.symbol("make_round");
     point_ = *elf_.symbol(point);
     if (!step.empty()) step_ = *elf_.symbol(step);
     trap_ = *elf_.symbol("trap_vector"), trap_end_ = *elf_.symbol("trap_real_time");
@@ -49,6 +54,7 @@ class OwnCycles {
     if (!interrupted_) before_pc_ = pc, before_sp_ = sp;
   }
   void count(std::uint32_t pc, std::uint32_t sp, std::uint64_t spent) {
+    if (pc == round_) inside_ = false;  // an abort has thrown away what was under way
     if (inside_) {
       cycles_ += spent, since_pause_ += spent;
       if (pc == pause_ || pc == return_) {
@@ -58,14 +64,15 @@ class OwnCycles {
       points_ += pc == point_;
       steps_ += pc == step_;
       inside_ = pc != return_ || sp != sp_;
-    } else if (pc == begin_) {
+    } else if (std::find(begin_.begin(), begin_.end(), pc) != begin_.end()) {
       inside_ = true, since_pause_ = 0;
       return_ = board_.cpu().reg(1), sp_ = sp;
     }
   }
   ImageBoard& board_;
   const ElfFile elf_;
-  std::uint32_t begin_, pause_, point_, step_ = 0, trap_, trap_end_;
+  std::vector<std::uint32_t> begin_;
+  std::uint32_t pause_, round_, point_, step_ = 0, trap_, trap_end_;
   bool inside_ = false, interrupted_ = false;
   std::uint32_t return_ = 0, sp_ = 0, before_pc_ = 0, before_sp_ = 0;
   std::uint64_t last_ = 0, cycles_ = 0, since_pause_ = 0, longest_ = 0;
