@@ -70,6 +70,28 @@ TEST_F(LookaheadOrders, QuitStopsAtTheEndOfTheMoveThatIsMade) {
   }
 }
 
+// motion:7.5: from the knot next to the oldest one it is back at that, from rest to rest within one segment.
+TEST_F(LookaheadOrders, BackOverOneSegmentToTheOldestPoint) {
+  begin({"TM4000 TA20 TS0", "X80"});  // 20 counts/ms, 100 a segment
+  ASSERT_EQ(host("&1B1R"), "");
+  wait_ms(3000);  // all of its records hold segments of it
+  ASSERT_EQ(host("&1\\"), "");
+  wait_ms(200);
+  ASSERT_EQ(host("&1<"), "");
+  wait_ms(3500);
+  const double oldest = at(1);
+  EXPECT_GT(oldest, 1000) << "not the start of the path";
+  ASSERT_EQ(host("I5121=14"), "") << "a segment forward";
+  wait_ms(300);
+  EXPECT_NEAR(at(1), oldest + 100, 1e-9);
+  ASSERT_EQ(host("&1<"), "");
+  wait_ms(300);
+  EXPECT_NEAR(at(1), oldest, 1e-9);
+  ASSERT_EQ(host("&1>"), "");
+  wait_ms(5000);
+  EXPECT_EQ(motors[0].trajectory, 80000 * 3072);
+}
+
 // PE is the line that executes, on the way back too: away from the corners it goes by the place alone.
 TEST_F(LookaheadOrders, PeIsTheLineThatExecutesBackwardsToo) {
   begin({"TM200 TA20 TS0", "X5", "M1==1 X10", "X15"});

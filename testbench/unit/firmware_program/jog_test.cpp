@@ -12,6 +12,7 @@ extern "C" {
 #include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
+#include "firmware/motion/speed_profile.h"
 extern volatile std::uint32_t jogs_asked;  // jog_state.h: motors whose request is not planned yet
 }
 
@@ -454,6 +455,47 @@ TEST_F(Jog, CountedFromElsewhereWhileItIsPlanned) {
     ASSERT_EQ(motors[0].trajectory, units(900)) << when;
     ASSERT_LT(largest, 20 * step_ms() * 1.01) << when << ": without a jump";
   }
+}
+
+// motion:4.1: 2^23 ms are the longest change, however small Ixx19 is; half of them take it half as far.
+TEST_F(Jog, NoChangeTakesLongerThanAWordOfMilliseconds) {
+  const auto change = [](double ixx19, double speed) {
+    const speed_limits l = speed_limits_make(ixx19, 50, 20);
+    return speed_change_time(&l, 0, speed);
+  };
+  EXPECT_EQ(change(0, 1), 8388608);
+  EXPECT_EQ(change(1.0 / 16777216, 1), 8388608);
+  EXPECT_EQ(change(1.0 / 4194304, 1), 4194304 + 20);
+  const speed_limits longer = speed_limits_make(1.0 / 8388608, 50, 0.5);
+  EXPECT_EQ(speed_change_time(&longer, 0, 1), 8388608) << "of half a ms more";
+  EXPECT_EQ(change(1, 20), 50);
+  EXPECT_EQ(change(1, 31), 51);
+}
+
+// Two changes at once while a motion is planned are no less than one: what it was planned for is over.
+TEST_F(Jog, TwoChangesWhileItIsPlanned) {
+  const std::function<void()> changes[] = {[] { jog_count_from(0, units(100), 0); }, [] { jog_drop(0); },
+                                           [] { jog_program_takes(0); }};
+  set({0.25, 0, 50, 20}, 1);
+  for (const auto& change : changes)
+    for (int when = 1; when < 60; ++when) {
+      motors[0].trajectory = 0;
+      motors[0].path = PATH_STANDS;
+      ASSERT_TRUE(jog_to(0, units(1000)));
+      int pauses = 0;
+      for (int i = 0; i < 2000 && jog_is_moving(0); ++i) {
+        jog_servo(0);
+        platform::real_time_in_slices([&] {
+          if (++pauses != when) return;
+          const std::uint32_t state = hal_mask_servo();
+          change();
+          hal_unmask(state);
+          ASSERT_TRUE(jog_to(0, units(300)));
+        });
+      }
+      ASSERT_GE(pauses, when);
+      ASSERT_EQ(motors[0].trajectory, units(300)) << when;
+    }
 }
 
 TEST_F(Jog, KilledMotorStandsAndTakesNoRequest) {

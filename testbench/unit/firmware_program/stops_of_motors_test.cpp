@@ -358,6 +358,19 @@ TEST_F(StopsOfMotors, RotaryAxesGoTheShortestWay) {
   EXPECT_EQ(motors[0].trajectory, position(16000));
 }
 
+// motion:4.4: the turn of an axis is that of the first motor of its own system which carries it alone.
+TEST_F(StopsOfMotors, TheTurnIsThatOfAMotorOfTheSystem) {
+  fit({"100A", "100A", "100X", "100B", "100A", "100A"});
+  ASSERT_EQ(host("&1#1->0#2->0"), "");
+  ASSERT_EQ(host("&2#1->100A#2->100A"), "");
+  ASSERT_EQ(host("I127=0 I227=7200 I327=7200 I427=7200 I527=36000 I627=7200"), "");
+  store({"TM100 TA20 TS0 A270"});
+  run();
+  EXPECT_EQ(motors[4].trajectory, position(-9000));
+  EXPECT_EQ(motors[5].trajectory, position(-9000)) << "with it";
+  EXPECT_EQ(motors[0].trajectory, 0);
+}
+
 // motion:4.4/4: below 0 the sign of the target is the direction, and 0 has none: upwards.
 TEST_F(StopsOfMotors, RotaryAxesGoUpwardsTo0) {
   fit({"100A"});

@@ -77,6 +77,17 @@ TEST_F(DesiredPosition, AnotherMasterBeginsWhereItStands) {
   EXPECT_EQ(desired(0), 11);
 }
 
+// Ixx05 of a place without memory: a master that stands at 0.
+TEST_F(DesiredPosition, AMasterThatIsNoWordMovesNothing) {
+  c_.line("I105=$50000 I107=96 I106=1");
+  close();
+  *hal_x(0x50000) = 500 * 32;
+  EXPECT_EQ(desired(0), 0);
+  c_.line("I105=$10F5");
+  master(1);
+  EXPECT_EQ(desired(0), 1);
+}
+
 // Ixx06 = 3, offset mode: replies do not show what the master has moved.
 TEST_F(DesiredPosition, RepliesInOffsetModeAreWithoutTheMaster) {
   c_.line("I105=$10F5 I107=96 I106=3");

@@ -1,0 +1,44 @@
+// The times of a path's moves (motion:4.2), and moves that have none.
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/path.h"
+}
+
+namespace {
+
+using namespace moving_motors;
+
+// A move that is shorter than its acceleration stops within itself: what its beginning takes is gone.
+TEST(Path, TheLastStopHasTheRoomThatIsLeft) {
+  static path p;
+  p = {};
+  p.count = 1;
+  path_set_times(&p.moves[0], 10, 20, 0);
+  p.moves[0].change = path_time(4);
+  EXPECT_EQ(path_ends(&p, 1), path_time(10) + path_time(2 * 10 - 4) / 2);
+  path_set_times(&p.moves[0], 10, 8, 0);
+  p.moves[0].change = path_time(4);
+  EXPECT_EQ(path_ends(&p, 1), path_time(10) + path_time(8) / 2);
+}
+
+class PathErrors : public MovingMotors {};
+
+// firmware:7.10: a feedrate of 0 is error 8, whatever plans the move.
+TEST_F(PathErrors, AFeedrateOfZeroIsOneWithAndWithoutSegments) {
+  for (const char* isx13 : {"I5113=0", "I5113=5"})
+    for (const char* line : {"LINEAR X1", "CIRCLE1 X1 Y1 I1 J0"}) {
+      SCOPED_TRACE(std::string(isx13) + " " + line);
+      platform::power_up();
+      fit({"1000X", "1000Y"});
+      ASSERT_EQ(host(isx13), "");
+      store({"INC TA20 TS0 F0", line});
+      ASSERT_EQ(host("&1B1R"), "");
+      platform::servo_ticks(ticks_of(100));
+      EXPECT_FALSE(run_is_running(0));
+      EXPECT_EQ(host("RY$2014"), "8");
+      EXPECT_EQ(motors[0].trajectory, 0);
+    }
+}
+
+}  // namespace
