@@ -63,6 +63,27 @@ TEST_P(BoardMap, DataPinsAreDrivenFromTheWordOfTheRamToTheEndOfTheRead) {
   }
 }
 
+// However many reads of others follow: each shows its own word, and none of them before its sample.
+TEST_P(BoardMap, TheWordOfTheRamIsShownByItsReadAlone) {
+  rig.write(true, 0x060000, 0x1234);
+  rig.write(true, kHostSignals, 0x5);
+  EXPECT_EQ(rig.read(true, 0x060000), 0x1234u);
+  for (int reads = 1; reads <= 9; ++reads) {
+    rig.in.pa_addr = kHostSignals;
+    rig.in.pa_x = true;
+    rig.in.pa_aa = 0;
+    rig.in.pa_rd_n = false;
+    rig.apply();
+    rig.run(3);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 0u) << reads;
+    rig.run(9);
+    EXPECT_EQ(rig.get(pin::kPaData), 0x5u) << reads;
+    rig.in.pa_rd_n = true;
+    rig.apply();
+    rig.run(6);
+  }
+}
+
 TEST_P(BoardMap, DataPinsAreDrivenFromTheSampleToTheEndOfTheRead) {
   struct Case {
     std::uint32_t address;
