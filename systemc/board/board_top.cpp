@@ -23,7 +23,6 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::
       panel_port_("panel_port"),
       ssi_("ssi"),
       gate_ics_(ics) {
-  inputs_.fitted = ics;
   isa_slave_.leave_ends_out();
   for (unsigned i = 0; i < Dpram::kWords; ++i) dpram_.poke(i, start_word(start_seed(seed), i));
   reset_all(0);
@@ -180,10 +179,7 @@ BoardTop::IcAccess BoardTop::take_strobe(Tick t) {
   if (!read && !write) return {};
   select();
   if (select_.ssi) ssi_.advance(t - 1);
-  if (read && select_.any)
-    bus_read_.take(read_data(t - 1), bus_sync_.rd_falls(), select_.internal);
-  else if (read)
-    bus_read_.take_nothing();
+  if (read && select_.any) bus_read_.take(read_data(t - 1), bus_sync_.rd_falls(), select_.internal);
   if (select_.ssi) {
     if (read) ssi_.read_taken(bus_sync_.where().x, bus_sync_.where().addr & Ssi::kPage);
     return {read, write, true, 0, bus_sync_.where(), bus_sync_.wdata()};

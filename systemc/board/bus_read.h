@@ -16,13 +16,12 @@ class BusRead {
     falls_ = falls;
     if (rd_n) oe_ = false;  // without a clock
   }
-  // The sample of a read in a register region, with its count; of one elsewhere.
+  // The sample of a read in a register region, with its count. Others find the pins off: /RD has been high.
   void take(std::uint32_t data, std::uint8_t of, bool on_chip) {
     data_ = data;
     of_ = of;
     oe_ = !rd_n_ && !on_chip;
   }
-  void take_nothing() { oe_ = false; }
   void reset() {
     data_ = 0;
     oe_ = false;
