@@ -4,7 +4,8 @@
 // no fall in between, a period or more after the address. Then it is that strobe's own address, whatever the delays.
 //   the edge of clk_ref that finds a new strobe low and one of our regions selected: address and data are taken
 //   the next one: we_o or rd_o, if the strobe was still low at the first; the write is made, a read has its sample
-// A strobe of others, or one too short, does nothing. Asynchronous reset. docs/port_a.md.
+// A strobe of others, or one too short, does nothing. Asynchronous reset of the strobes' two stages, of we_o and rd_o:
+// the rest counts with a level that has come through both, and the reset is longer. docs/port_a.md.
 `default_nettype none
 
 module bus_sync (
@@ -40,14 +41,9 @@ module bus_sync (
     .q_o   ({rd2_q, wr2_q, rd_low2_q, wr_low2_q})
   );
   logic [24:0] pins_q;  // {int, aa, x, addr}
-  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      {rd3_q, wr3_q} <= 4'h0;
-      pins_q         <= 25'h0;
-    end else begin
-      {rd3_q, wr3_q} <= {rd2_q, wr2_q};
-      pins_q         <= {pa_int_i, pa_aa_i, pa_x_i, pa_addr_i};
-    end
+  always_ff @(posedge clk_pwm_i) begin
+    {rd3_q, wr3_q} <= {rd2_q, wr2_q};
+    pins_q         <= {pa_int_i, pa_aa_i, pa_x_i, pa_addr_i};
   end
 
   // ---------------------------------------------------------------- clk_ref: address and data
@@ -59,40 +55,33 @@ module bus_sync (
   assign own     = pins_q[24] | pins_q[21] | (pins_q[23:20] == 4'h0);  // on-chip page, AA1, default area
   assign rd_take = own & (rd3_q != rd_seen_q) & (rd2_q == rd3_q) & rd_low2_q;
   assign wr_take = own & (wr3_q != wr_seen_q) & (wr2_q == wr3_q) & wr_low2_q;
+  always_ff @(posedge clk_ref_i) begin
+    rd_seen_q  <= rd3_q;
+    wr_seen_q  <= wr3_q;
+    rd_taken_q <= rd_take;
+    wr_taken_q <= wr_take;
+    where_q    <= pins_q;
+    wdata_q    <= pa_wdata_i;
+  end
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      rd_seen_q  <= 2'd0;
-      wr_seen_q  <= 2'd0;
-      rd_taken_q <= 1'b0;
-      wr_taken_q <= 1'b0;
-      ref_q      <= 1'b0;
-      where_q    <= 25'h0;
-      wdata_q    <= 24'h0;
-    end else begin
-      rd_seen_q  <= rd3_q;
-      wr_seen_q  <= wr3_q;
-      rd_taken_q <= rd_take;
-      wr_taken_q <= wr_take;
-      ref_q      <= ~ref_q;
-      where_q    <= pins_q;
-      wdata_q    <= pa_wdata_i;
-    end
+    if (!rst_ni) ref_q <= 1'b0;
+    else         ref_q <= ~ref_q;
   end
 
   // ---------------------------------------------------------------- clk_pwm: was the strobe still low then?
   logic ref1_q, ref2_q, we_q, rd_q;
+  always_ff @(posedge clk_pwm_i) begin
+    ref1_q <= ref_q;
+    ref2_q <= ref1_q;
+  end
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      ref1_q <= 1'b0;
-      ref2_q <= 1'b0;
-      we_q   <= 1'b0;
-      rd_q   <= 1'b0;
+      we_q <= 1'b0;
+      rd_q <= 1'b0;
     end else begin
-      ref1_q <= ref_q;
-      ref2_q <= ref1_q;
       // Two edges after one of clk_ref: what the second stage shows are the pins of that edge.
-      we_q   <= (ref1_q ^ ref2_q) & wr_taken_q & wr_low2_q & (wr2_q == wr_seen_q);
-      rd_q   <= (ref1_q ^ ref2_q) & rd_taken_q & rd_low2_q & (rd2_q == rd_seen_q);
+      we_q <= (ref1_q ^ ref2_q) & wr_taken_q & wr_low2_q & (wr2_q == wr_seen_q);
+      rd_q <= (ref1_q ^ ref2_q) & rd_taken_q & rd_low2_q & (rd2_q == rd_seen_q);
     end
   end
 
