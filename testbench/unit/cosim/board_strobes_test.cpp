@@ -411,8 +411,8 @@ TEST_P(BoardMap, NoReadShowsTheSampleOfTheOneBeforeIt) {
   }
 }
 
-// host-bus:2.6/10: the reset acts at once and forgets the cycle that it meets. D is let go, /TA is low, and a strobe
-// that is still low behind it asks for nothing, however many were counted before.
+// host-bus:2.6/10: the reset acts at once and forgets the cycle that it meets. D is let go and its word is gone, /TA is
+// low, and a strobe that is still low behind it asks for nothing, however many were counted before.
 TEST_P(BoardMap, AResetInACycleEndsItThoughItsStrobeStaysLow) {
   struct Place {
     std::uint32_t address;
@@ -443,6 +443,7 @@ TEST_P(BoardMap, AResetInACycleEndsItThoughItsStrobeStaysLow) {
           rig.apply();
           rig.run(1);
           ASSERT_EQ(rig.get(pin::kPaDataOe), 0u) << tick;
+          ASSERT_EQ(rig.get(pin::kPaData), 0u) << tick;
           ASSERT_EQ(rig.get(pin::kPaTaN), 0u) << tick;
         }
         strobe_n = true;
