@@ -177,6 +177,7 @@ TEST_F(Listing, OffsetsCountWordsAndPartsAreCut) {
   EXPECT_EQ(host("LIST PLC6"), "ERR003");
   EXPECT_EQ(host("LIST PLC5,-1"), "ERR003");
   EXPECT_EQ(host("LIST PLC5,0,X"), "ERR003");
+  EXPECT_EQ(host("LIST PLC5,0,-1"), "ERR003");
   EXPECT_EQ(host("LIST PROG 99"), "ERR003");
   EXPECT_EQ(host("LIST FORWARD"), "ERR003");
   EXPECT_EQ(host("LIST UNKNOWN"), "ERR003");

@@ -339,4 +339,29 @@ TEST_F(RunControl, UndefineAllIsRefusedWhileASystemThatLosesDefinitionsRuns) {
   EXPECT_EQ(host("UNDEFINE ALL &2#2->"), "0") << "&3 runs and has nothing to lose";
 }
 
+// Commands of a line are executed one after the other, up to what is none.
+TEST_F(RunControl, ACommandBeforeWhatIsNoWordIsExecuted) {
+  ASSERT_EQ(host("OPEN PROG 1 CLEAR DWELL60000 CLOSE"), "");
+  EXPECT_EQ(host("B1R["), "ERR003");
+  EXPECT_TRUE(run_is_running(0));
+  EXPECT_EQ(host("A]"), "ERR003");
+  platform::servo_ticks(6);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(host("R1"), "ERR005") << "R with a number is a statement of a program";
+}
+
+TEST_F(RunControl, UndefineAllIsRefusedWhicheverMotorWouldBeLost) {
+  for (const char* const n : {"1", "2", "32"}) {
+    platform::power_up();
+    const std::string motor = n;
+    ASSERT_EQ(host("I" + motor + "00=1"), "");
+    motors[std::stoi(motor) - 1].loop = LOOP_CLOSED;
+    ASSERT_EQ(host("&1#" + motor + "->5X DEF ROT 50 B0 OPEN ROT"), "");
+    ASSERT_EQ(host("DWELL60000"), "");
+    ASSERT_EQ(host("CLOSE R"), "");
+    EXPECT_EQ(host("UNDEFINE ALL"), "ERR001") << "#" << motor;
+    EXPECT_EQ(host("#" + motor + "->"), "5X");
+  }
+}
+
 }  // namespace

@@ -217,6 +217,22 @@ TEST_F(DesiredPosition, ALoopIsClosedWithWhatItsTableAddsThere) {
   }
 }
 
+// A table that is deleted while it works works no more, whatever command has deleted it.
+TEST_F(DesiredPosition, ADeletedTableCorrectsNoMore) {
+  *hal_x(0x10F0) = 250 * 32;
+  for (const char* command : {"#1 DELETE COMP", "DELETE ALL"}) {
+    motor_kill(0);
+    c_.servo(2);
+    ASSERT_EQ(c_.line("#1 DEFINE COMP 4,1000"), "");
+    ASSERT_EQ(c_.line("160 -80 48 16 I51=1"), "");
+    close();
+    ASSERT_NE(motors[0].compensation, 0);
+    ASSERT_EQ(c_.line(command), "");
+    c_.servo(1);
+    EXPECT_EQ(motors[0].compensation, 0) << command;
+  }
+}
+
 // Entries are of the target's counts, the span of the source's; Ixx08 of either may change.
 TEST_F(DesiredPosition, TablesGoByTheScalesOfBothMotors) {
   ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
