@@ -4,6 +4,7 @@
 #include "firmware/motion/average_velocity.h"
 
 #include "firmware/hal/hal.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
 #include "firmware/variables/i_variables.h"
 
@@ -67,5 +68,5 @@ int64_t average_velocity(uint32_t motor) {
 
 uint32_t average_velocity_word(uint32_t motor) {
   const int64_t velocity = average_velocity(motor), most = HAL_WORD_MASK >> 1;
-  return (uint32_t)(velocity > most ? most : velocity < -most ? -most : velocity) & HAL_WORD_MASK;
+  return (uint32_t)fixed_within_long(velocity, most) & HAL_WORD_MASK;
 }

@@ -21,8 +21,7 @@ static void set_step(struct phase_motor* p, int32_t whole, uint32_t parts) {
 /* `step` in 2^-24 of a unit, at most 2^22 units. */
 static void set_long_step(struct phase_motor* p, int64_t step) {
   const int64_t longest = (int64_t)1 << (PART_BITS + 22);
-  if (step > longest) step = longest;
-  if (step < -longest) step = -longest;
+  step = fixed_within_long(step, longest);
   set_step(p, (int32_t)(step >> PART_BITS), (uint32_t)step & HAL_WORD_MASK);
 }
 

@@ -2,6 +2,7 @@
 #include "firmware/motion/conversion_filter.h"
 
 #include "firmware/hal/hal.h"
+#include "firmware/motion/fixed_point.h"
 
 enum { GAIN_BITS = 23, OUT_BITS = 8 };
 #define INTEGRAL_MOST (INT64_C(1) << 54)
@@ -28,9 +29,7 @@ static int32_t behind(const struct conversion_entry* entry) {
     state->previous = now;
     state->out = (int32_t)(now << OUT_BITS);
   }
-  int32_t step = hal_signed(now - state->previous);
-  if (step > most) step = most;
-  if (step < -most) step = -most;
+  const int32_t step = fixed_within(hal_signed(now - state->previous), most);
   state->previous += (uint32_t)step;
   return (int32_t)((state->previous << OUT_BITS) - (uint32_t)state->out);
 }
@@ -52,9 +51,8 @@ void convert_exponential(const struct conversion_entry* entry) {
 void convert_tracking(const struct conversion_entry* entry) {
   struct conversion_state* state = entry->state;
   const int32_t error = behind(entry);
-  int64_t integral = state->integral + (int64_t)error * conversion_magnitude(entry, 4);
-  if (integral > INTEGRAL_MOST) integral = INTEGRAL_MOST;
-  if (integral < -INTEGRAL_MOST) integral = -INTEGRAL_MOST;
+  const int64_t sum = state->integral + (int64_t)error * conversion_magnitude(entry, 4);
+  const int64_t integral = fixed_within_long(sum, INTEGRAL_MOST);
   state->integral = integral;
   move(entry, (int64_t)error * conversion_magnitude(entry, 2) + integral);
 }

@@ -2,6 +2,7 @@
 #include "firmware/motion/conversion_word.h"
 
 #include "firmware/hal/hal.h"
+#include "firmware/motion/fixed_point.h"
 
 enum { ADC_SHIFT = 3, ADC_BITS = 0xFFFF00 };
 
@@ -48,9 +49,7 @@ static void follow(const struct conversion_entry* entry, int32_t most) {
     state->previous = now;
     state->out = (int32_t)(now << entry->shift);
   }
-  int32_t step = moved(entry, now, state->previous);
-  if (step > most) step = most;
-  if (step < -most) step = -most;
+  const int32_t step = fixed_within(moved(entry, now, state->previous), most);
   state->previous += (uint32_t)step;
   state->out = (int32_t)((uint32_t)state->out + ((uint32_t)step << entry->shift));
   *entry->result = (uint32_t)state->out & HAL_WORD_MASK;

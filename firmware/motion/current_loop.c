@@ -50,9 +50,7 @@ static inline int32_t half_of_middle(int32_t a, int32_t b, int32_t c) {
 }
 
 static inline uint32_t word(int32_t phase, int32_t scale) {
-  if (phase > FULL_PHASE) phase = FULL_PHASE;
-  if (phase < -FULL_PHASE) phase = -FULL_PHASE;
-  return (uint32_t)fixed_high(phase, scale) & HAL_WORD_MASK;
+  return (uint32_t)fixed_high(fixed_within(phase, FULL_PHASE), scale) & HAL_WORD_MASK;
 }
 
 static inline void show(uint32_t address, int32_t q, int32_t d, unsigned shift) {

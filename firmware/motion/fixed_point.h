@@ -27,6 +27,16 @@ enum { CURRENT_FRACTION_BITS = 28, VOLTAGE_FRACTION_BITS = 23, CURRENT_GAIN_FRAC
  * the servo task a tenth of its time. */
 #define FIXED_IN_REGISTER(address) __asm__("" : "+r"(address))
 
+/* What is next to `value` of -`most` to `most`. */
+static inline int32_t fixed_within(int32_t value, int32_t most) {
+  return value > most ? most : value < -most ? -most : value;
+}
+static inline int64_t fixed_within_long(int64_t value, int64_t most) {
+  return value > most ? most : value < -most ? -most : value;
+}
+static inline int64_t fixed_smaller(int64_t a, int64_t b) { return a < b ? a : b; }
+static inline int64_t fixed_larger(int64_t a, int64_t b) { return a > b ? a : b; }
+
 /* Upper 64 of the 128 bits. */
 static inline uint64_t fixed_multiply_high(uint64_t a, uint64_t b) {
   const uint64_t al = (uint32_t)a, ah = a >> 32, bl = (uint32_t)b, bh = b >> 32;

@@ -5,6 +5,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/jog_state.h"
 #include "firmware/motion/motor.h"
@@ -79,7 +80,7 @@ static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
   b->rate = m->path == PATH_OWN ? j->rate : coordinate_systems[m->cs].increment;
   b->leaves = b->motion.aim == AIM_RAMP && (m->path == PATH_SYSTEM || jog_now(j)->by_program);
   b->begins = j->clock + (int64_t)j->rate * (int64_t)cycles;
-  if (b->begins < j->request_begins) b->begins = j->request_begins;
+  b->begins = fixed_larger(b->begins, j->request_begins);
   if (m->path == PATH_OWN) {
     own_path_place(&b->place, &j->paths[j->current], b->begins - j->clock);
   } else {
@@ -134,7 +135,7 @@ static void begin_together(uint32_t motors_of_it) {
   int64_t longest = 0;
   for (uint32_t left = motors_of_it; left != 0u; left &= left - 1u) {
     const struct jog* j = &jogs[__builtin_ctz(left)];
-    if (j->request_begins - j->clock > longest) longest = j->request_begins - j->clock;
+    longest = fixed_larger(longest, j->request_begins - j->clock);
   }
   for (uint32_t left = motors_of_it; left != 0u; left &= left - 1u) {
     struct jog* j = &jogs[__builtin_ctz(left)];

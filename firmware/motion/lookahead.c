@@ -142,11 +142,9 @@ static int32_t cap_of(int32_t fastest, int32_t way) {
 static int32_t coarse_step(uint32_t motor, int64_t step) {
   const int32_t coarse = scales[motor].coarse;
   if (coarse >= 0) step >>= coarse;
-  if (step > STEP_MOST) step = STEP_MOST;
-  if (step < -STEP_MOST) step = -STEP_MOST;
-  if (coarse >= 0) return (int32_t)step;
-  step *= INT64_C(1) << -coarse;
-  return step > STEP_MOST ? STEP_MOST : step < -STEP_MOST ? -STEP_MOST : (int32_t)step;
+  step = fixed_within_long(step, STEP_MOST);
+  if (coarse < 0) step = fixed_within_long(step * (INT64_C(1) << -coarse), STEP_MOST);
+  return (int32_t)step;
 }
 
 static int32_t magnitude(int32_t value) { return value < 0 ? -value : value; }

@@ -50,9 +50,7 @@ void motor_output_write(uint32_t motor) {
   struct output* o = &outputs[motor];
   FIXED_IN_REGISTER(m);
   FIXED_IN_REGISTER(o);
-  int32_t word = m->output + o->bias;
-  if (word > WORD_MOST) word = WORD_MOST;
-  if (word < -WORD_MOST) word = -WORD_MOST;
+  const int32_t word = fixed_within(m->output + o->bias, WORD_MOST);
   if (o->word == 0 || (m->loop == LOOP_KILLED && word == o->written)) return;
   *o->word = (uint32_t)word & HAL_WORD_MASK;
   o->written = word;

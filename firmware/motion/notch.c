@@ -6,6 +6,7 @@
 #include "firmware/base/dimensions.h"
 #include "firmware/base/mathematics.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/variables/i_variables.h"
 
 enum { COEFFICIENTS = 4, COEFFICIENT_BITS = 30 };
@@ -59,16 +60,13 @@ static int64_t part(int64_t value, int32_t coefficient) {
   return high * (1 << (32 - COEFFICIENT_BITS)) + (low >> COEFFICIENT_BITS);
 }
 
-static int64_t clamp(int64_t value) {
-  if (value > STATE_MOST) return STATE_MOST;
-  return value < -STATE_MOST ? -STATE_MOST : value;
-}
-
 int64_t notch(uint32_t motor, int64_t output) {
   struct filter* f = &filters[motor];
-  const int64_t in = clamp(output);
-  const int64_t out = clamp(in + part(f->past[N1], f->coefficient[N1]) + part(f->past[N2], f->coefficient[N2]) -
-                            part(f->past[D1], f->coefficient[D1]) - part(f->past[D2], f->coefficient[D2]));
+  const int64_t in = fixed_within_long(output, STATE_MOST);
+  const int64_t out =
+      fixed_within_long(in + part(f->past[N1], f->coefficient[N1]) + part(f->past[N2], f->coefficient[N2]) -
+                            part(f->past[D1], f->coefficient[D1]) - part(f->past[D2], f->coefficient[D2]),
+                        STATE_MOST);
   f->past[N2] = f->past[N1];
   f->past[N1] = in;
   f->past[D2] = f->past[D1];

@@ -2,6 +2,7 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
+#include "firmware/motion/fixed_point.h"
 
 enum { TIME_FRACTION_BITS = 23, STAY_TIME_BITS = 36 }; /* a part of a stay lasts 2^36 units, 8192 ms */
 
@@ -20,7 +21,7 @@ void own_path_begin(struct own_path* path, int64_t start) {
 }
 
 static void set_time(struct own_piece* piece, int64_t time) {
-  piece->time = time < 1 ? 1 : time;
+  piece->time = fixed_larger(time, 1);
   piece->shift = __builtin_clzll((uint64_t)piece->time) - 32;
   const double normal = math_scale((double)piece->time, piece->shift - 32); /* [0.5, 1) */
   slice_pause();

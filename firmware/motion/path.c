@@ -55,7 +55,7 @@ int64_t path_begins(struct path* p, uint32_t ahead) { return path_corner(p, ahea
 /* Of the last one before a stop: as at its beginning, as far as there is room behind that. */
 static int64_t stop_length(const struct path_move* m) {
   const int64_t room = 2 * m->time - m->change;
-  return m->acceleration < room ? m->acceleration : room;
+  return fixed_smaller(m->acceleration, room);
 }
 
 int64_t path_ends(struct path* p, uint32_t count) {
@@ -65,9 +65,7 @@ int64_t path_ends(struct path* p, uint32_t count) {
 void path_blend(struct path* p, uint32_t ahead, int64_t now) {
   struct path_move *m = path_of(p, ahead), *before = path_of(p, ahead - 1u);
   const int64_t left = 2 * (path_corner(p, ahead) - now), room = 2 * before->time - before->change;
-  m->change = m->acceleration;
-  if (m->change > room) m->change = room;
-  if (m->change > left) m->change = left > 0 ? left : 0;
+  m->change = fixed_smaller(fixed_smaller(m->acceleration, room), fixed_larger(left, 0));
 }
 
 static int64_t part_of(const struct path_move* m, int64_t progress) {

@@ -2,11 +2,12 @@
 
 #include <stdatomic.h>
 
+#include "firmware/motion/fixed_point.h"
 #include "firmware/motion/fixed_ratio.h"
 
 /* inverse = 2^125 / (time << shift), with time << shift in [2^62, 2^63): far more bits than the fraction has. */
 void piece_set_time(struct piece* piece, int64_t time) {
-  if (time < 1) time = 1;
+  time = fixed_larger(time, 1);
   piece->continues = false;
   piece->warp = 0;
   piece->from = 0;

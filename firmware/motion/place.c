@@ -3,6 +3,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/corner.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/motion/path.h"
 #include "firmware/motion/place_motors.h"
 #include "firmware/motion/plan_cubic.h"
@@ -42,8 +43,7 @@ static bool blend(struct coordinate_system* s, struct move* next) {
   const int64_t end = corner(m), stop_begin = end - m->stop_length / 2, longest = m->time - m->blend_in / 2;
   if (!move_continues(s) || s->elapsed >= stop_begin) return false;
   int64_t half = next->acceleration / 2;
-  if (half > longest) half = longest;
-  if (end - half < s->elapsed) half = end - s->elapsed;
+  half = fixed_smaller(fixed_smaller(half, longest), end - s->elapsed);
   go_straight(s, stop_begin, end - half);
   next->blend_in = 2 * half;
   return true;
@@ -170,6 +170,7 @@ void move_take_back(uint32_t cs) {
   if (s->elapsed > corner(m) - m->stop_length / 2)
     m->stop_length = s->elapsed < corner(m) ? 2 * (corner(m) - s->elapsed) : 0;
   const int64_t stop_begin = corner(m) - m->stop_length / 2;
-  go_straight(s, stop_begin > s->elapsed ? stop_begin : s->elapsed, stop_begin > s->elapsed ? stop_begin : s->elapsed);
+  const int64_t straight_end = fixed_larger(stop_begin, s->elapsed);
+  go_straight(s, straight_end, straight_end);
   add_time(&s->ring, m->stop_length, s->started);
 }

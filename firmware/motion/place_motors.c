@@ -7,6 +7,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/spline_motor.h"
 #include "firmware/motion/system_motors.h"
@@ -154,11 +155,9 @@ static bool find_joint(const struct move* next, double needed, int64_t margin, s
   j->stop_begin = corner - m->stop_length / 2;
   if (!active || now >= j->stop_begin) return false;
   j->half = ((int64_t)needed + next->s_curve + 2) / 2;
-  if (j->half < next->acceleration / 2) j->half = next->acceleration / 2;
+  j->half = fixed_larger(j->half, next->acceleration / 2);
   const int64_t before = m->time - m->blend_in / 2, behind = next->time - next->stop_length / 2;
-  if (j->half > before) j->half = before;
-  if (j->half > behind) j->half = behind;
-  if (j->half > corner - now) j->half = corner - now;
+  j->half = fixed_smaller(fixed_smaller(j->half, before), fixed_smaller(behind, corner - now));
   j->end = corner - j->half;
   return needed == 0.0 || (double)(2 * j->half - s_part(next, 2 * j->half)) >= needed;
 }

@@ -3,6 +3,7 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/corner.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/motion/path.h"
 #include "firmware/motion/plan_move.h"
 #include "firmware/motion/plan_path.h"
@@ -77,7 +78,7 @@ static void set_time(uint32_t cs, struct path_move* m) {
     return;
   }
   const int64_t wanted = path_time(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS);
-  path_set_time(m, wanted > least ? wanted : least);
+  path_set_time(m, fixed_larger(wanted, least));
 }
 
 /* What blends there, or would but for the corner. */

@@ -2,6 +2,7 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/motion/plan_move.h"
 #include "firmware/variables/i_variables.h"
 
@@ -17,7 +18,7 @@ static int64_t cubic_time(uint32_t cs) {
   const double steps = math_floor(time * STEPS_A_MS + 0.5);
   slice_pause();
   const int64_t units = plan_units(steps / STEPS_A_MS);
-  return units < MOVE_MINIMUM_UNITS ? MOVE_MINIMUM_UNITS : units;
+  return fixed_larger(units, MOVE_MINIMUM_UNITS);
 }
 
 /* Of the velocity behind `:`, units a Isx90. */

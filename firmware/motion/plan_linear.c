@@ -4,6 +4,7 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/corner.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/motion/plan_move.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/variables/i_variables.h"
@@ -101,7 +102,7 @@ static void set_times(uint32_t cs, struct move* m, double milliseconds, const st
   }
   m->time = plan_units(milliseconds);
   int64_t least = m->acceleration > 0 ? m->acceleration : MOVE_MINIMUM_UNITS;
-  if (m->time < least) m->time = least;
+  m->time = fixed_larger(m->time, least);
   m->stop_length = m->acceleration;
   if (limits->square > 0.0) {
     const double time = plan_milliseconds(m->time);

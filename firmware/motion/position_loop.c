@@ -49,13 +49,6 @@ static struct loop {
 
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
 
-static int64_t clamp(int64_t value, int64_t most) {
-  if (value > most) return most;
-  return value < -most ? -most : value;
-}
-
-static int64_t smaller(int64_t a, int64_t b) { return a < b ? a : b; }
-
 /* Variables -------------------------------------------------------------------------------------------------------- */
 
 static const volatile uint32_t* source_of(uint32_t motor, uint32_t ixxnn) {
@@ -67,7 +60,7 @@ static const volatile uint32_t* source_of(uint32_t motor, uint32_t ixxnn) {
 /* Position of sixteenths of a count, at most `most`. */
 static int64_t position_of(uint32_t motor, int32_t sixteenths, int64_t most) {
   const int64_t magnitude = sixteenths < 0 ? -(int64_t)sixteenths : sixteenths;
-  return smaller(magnitude * (POSITION_SUBCOUNT / PART_OF_COUNT) * variable(motor, IXX08_POSITION_SCALE), most);
+  return fixed_smaller(magnitude * (POSITION_SUBCOUNT / PART_OF_COUNT) * variable(motor, IXX08_POSITION_SCALE), most);
 }
 
 void position_loop_initialize(void) {
@@ -78,7 +71,7 @@ void position_loop_initialize(void) {
 /* Where a source stands now is no movement. */
 static void put(struct loop* l, const struct loop* next) {
   if (l->one_source) l->velocity_reading = l->position_reading;
-  l->integral = clamp(l->integral, next->integral_most);
+  l->integral = fixed_within_long(l->integral, next->integral_most);
   if (next->position_source != l->position_source) l->position_reading = *next->position_source;
   if (next->velocity_source != l->velocity_source) l->velocity_reading = *next->velocity_source;
   if (l->left > next->extension) l->left = next->extension;
@@ -172,8 +165,8 @@ static void measure(struct motor* m, struct loop* l) {
 
 /* FINER. */
 static void integrate(struct loop* l, int64_t error, int64_t rest) {
-  const int64_t integrand = clamp(l->integrates_velocity ? rest + error : error, l->integrand_most);
-  l->integral = clamp(l->integral + (l->integral_gain * integrand >> FINER), l->integral_most);
+  const int64_t integrand = fixed_within_long(l->integrates_velocity ? rest + error : error, l->integrand_most);
+  l->integral = fixed_within_long(l->integral + (l->integral_gain * integrand >> FINER), l->integral_most);
 }
 
 static bool integrates(const struct loop* l, bool moves) {
@@ -184,31 +177,32 @@ static bool integrates(const struct loop* l, bool moves) {
 static inline int64_t with_gain(const struct loop* l, int64_t sum) {
   if (is_small(sum)) return (int64_t)(int32_t)sum * l->proportional >> (FINER + GAIN_BITS - NOTCH_FINER);
   const int32_t finer = ((int32_t)sum & ((1 << FINER) - 1)) * l->proportional >> FINER;
-  return ((clamp(sum, SUM_MOST) >> FINER) * l->proportional + finer) >> (GAIN_BITS - NOTCH_FINER);
+  return ((fixed_within_long(sum, SUM_MOST) >> FINER) * l->proportional + finer) >> (GAIN_BITS - NOTCH_FINER);
 }
 
 /* What a clip leaves of an output, and whether it had to. */
 static void put_out(struct motor* m, struct loop* l, int64_t output) {
   const int32_t most = l->output_most, whole = is_small(output) ? (int32_t)output : saturated(output);
-  const int32_t clipped = whole > most ? most : whole < -most ? -most : whole;
+  const int32_t clipped = fixed_within(whole, most);
   m->output = clipped;
   l->saturated = clipped == most || clipped == -most;
 }
 
 /* Numbers of any size, the deadband, the integral of the velocity's error. */
 static int64_t pid(const struct motor* m, struct loop* l, int64_t step) {
-  const int64_t limited = clamp(m->commanded - m->actual, l->error_most);
+  const int64_t limited = fixed_within_long(m->commanded - m->actual, l->error_most);
   int64_t error = limited * (1 << FINER);
-  if (l->deadband_gain != 0) error += l->deadband_gain * clamp(limited, l->deadband) * (1 << (FINER - DEADBAND_BITS));
+  if (l->deadband_gain != 0)
+    error += l->deadband_gain * fixed_within_long(limited, l->deadband) * (1 << (FINER - DEADBAND_BITS));
   const int64_t rest = l->velocity_forward * step - (int64_t)l->derivative * m->velocity;
   if (integrates(l, step != 0)) integrate(l, error, rest);
   int64_t sum = error + rest + (l->integral >> (INTEGRAL_BITS - FINER));
-  if (l->acceleration_forward != 0) sum += l->acceleration_forward * clamp(step - l->step, STEP_MOST);
+  if (l->acceleration_forward != 0) sum += l->acceleration_forward * fixed_within_long(step - l->step, STEP_MOST);
   return with_gain(l, sum);
 }
 
 static void close_loop(uint32_t motor, struct motor* m, struct loop* l) {
-  const int64_t step = clamp(m->commanded - m->closed_at, STEP_MOST), finer = pid(m, l, step);
+  const int64_t step = fixed_within_long(m->commanded - m->closed_at, STEP_MOST), finer = pid(m, l, step);
   int64_t output = (notch_is_used(motor) ? notch(motor, finer) : finer) >> NOTCH_FINER;
   if (step > 0) output += l->friction;
   if (step < 0) output -= l->friction;
@@ -252,13 +246,12 @@ static inline bool close_simple_loop(uint32_t motor, struct motor* m, struct loo
   m->closed_at = commanded;
   l->step = long_step;
   const int32_t step = (int32_t)long_step, most = l->small_error_most;
-  int32_t error = (int32_t)difference;
-  if (error > most) error = most;
-  if (error < -most) error = -most;
+  const int32_t error = fixed_within((int32_t)difference, most);
   int64_t sum = (int64_t)error * (1 << FINER) - (int64_t)l->derivative * m->velocity;
   if (step != 0) sum += (int64_t)l->velocity_forward * step;
   if ((int32_t)change != 0) sum += (int64_t)l->acceleration_forward * (int32_t)change;
-  if (integrates(l, step != 0)) l->integral = clamp(l->integral + (int64_t)l->integral_gain * error, l->integral_most);
+  if (integrates(l, step != 0))
+    l->integral = fixed_within_long(l->integral + (int64_t)l->integral_gain * error, l->integral_most);
   sum += l->integral >> (INTEGRAL_BITS - FINER);
   const int64_t finer = with_gain(l, sum);
   l->filtered = finer;
@@ -336,7 +329,7 @@ int64_t position_loop_measured(uint32_t motor) {
 }
 void position_loop_forget_movement(uint32_t motor) { loops[motor].forgets = FORGETS; }
 int32_t position_loop_filtered(uint32_t motor) {
-  return (int32_t)clamp(of_one_moment(&loops[motor].filtered) >> NOTCH_FINER, WORD_MOST);
+  return (int32_t)fixed_within_long(of_one_moment(&loops[motor].filtered) >> NOTCH_FINER, WORD_MOST);
 }
 int64_t position_loop_integral(uint32_t motor) { return of_one_moment(&loops[motor].integral) >> INTEGRAL_BITS; }
 int64_t position_loop_step(uint32_t motor) { return of_one_moment(&loops[motor].step); }

@@ -6,11 +6,7 @@
 
 enum { LARGEST = (1 << 23) - 1, ROUND_BITS = CURRENT_FRACTION_BITS - 1 - 23 };
 
-static uint32_t clipped(int32_t output) {
-  if (output > LARGEST) output = LARGEST;
-  if (output < -LARGEST) output = -LARGEST;
-  return (uint32_t)output & HAL_WORD_MASK;
-}
+static uint32_t clipped(int32_t output) { return (uint32_t)fixed_within(output, LARGEST) & HAL_WORD_MASK; }
 
 static uint32_t word(int32_t q, int32_t d, struct phase_sines at, int32_t bias) {
   const int32_t sum = fixed_high(d, at.cosine) - fixed_high(q, at.sine); /* 2^-27 */

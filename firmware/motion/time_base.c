@@ -3,6 +3,7 @@
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/variables/words.h"
 
 void time_base_slew(uint32_t cs, int32_t target, enum i_name rate) {
