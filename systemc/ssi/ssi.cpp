@@ -112,14 +112,13 @@ void Ssi::advance(Tick t) {
     Tick next = nets_moved() ? now_ + 1 : t;
     for (const Group& g : group_) next = std::min({next, g.next, g.load});
     pass(next - 1 - now_);
-    end_shots(next - 1);
     for (unsigned i = 0; i < kGroups; ++i) edge(next, i);
     pass(1);
     phase_ = phase;
     servo_ = servo;
     now_ = next;
-    end_shots(next);
   }
+  end_shots(now_);
 }
 
 // The pins as they are seen inside follow those outside before a frame can begin, and stay.

@@ -89,6 +89,26 @@ TYPED_TEST(SsiFrames, AShorterWordIsLoadedWithoutTheLongerBesideIt) {
   EXPECT_EQ(this->rig.read(false, brick_word(2)), 0u);
 }
 
+// A line that shows each bit to one edge alone, and its inverse else, beside one that moves each tick: two flip-flops
+// take it to the rise of the clock (servo-ic:11.9/2).
+TYPED_TEST(SsiFrames, ABitIsTheLevelThatTheEdgeTwoBeforeTheRiseFinds) {
+  BRICK_COVERS("SSI-1");
+  constexpr std::uint32_t kPosition = 0x5A3C96;
+  constexpr Tick kHalf = 48, kPeriod = 2 * kHalf;  // 1.23 MHz
+  this->rig.reset(true);
+  this->rig.write(true, kGeoClock, 3);
+  this->rig.write(true, kGeoResult[0], 3 << 2 | 2);             // 24 bits
+  const Tick seen = this->rig.now() + 1, first = seen + kHalf;  // its first rise, which takes no bit
+  this->rig.encoders = [first](Tick now, unsigned) -> unsigned {
+    const Tick behind = now + 3 - first, bit = (behind + kHalf) / kPeriod;  // the nearest
+    const bool right = behind == bit * kPeriod;
+    return (bit < 1 || bit > 24 || ((kPosition >> (24 - bit) & 1) != 0) == right) | (now % 2 != 0 ? 2 : 0);
+  };
+  ASSERT_EQ(this->trigger(), seen);
+  this->rig.run(26 * kPeriod);
+  EXPECT_EQ(this->rig.read(false, kGeoResult[0]), kPosition);
+}
+
 TYPED_TEST(SsiFrames, BrickTellsAParityError) {
   BRICK_COVERS("SSI-1");
   for (const unsigned parity : {1u, 2u}) {

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <type_traits>
 
 #include "systemc/ssi/ssi.h"
 #include "testbench/unit/rtl/comparison.h"
@@ -58,7 +59,7 @@ class RtlSsiRig {
 
 class ModelSsiRig {
  public:
-  ModelSsiRig() : ssi_(sc_core::sc_gen_unique_name("ssi")) {}
+  explicit ModelSsiRig(bool awake = false) : ssi_(sc_core::sc_gen_unique_name("ssi")), awake_(awake) {}
 
   Tick now() const { return now_; }
   unsigned clk() const { return clk_; }
@@ -91,7 +92,7 @@ class ModelSsiRig {
       if (!access_.write) ssi_.read_taken(access_.x, access_.address);
     }
     ++now_;
-    const bool due = now_ >= ssi_.next_event();
+    const bool due = awake_ || now_ >= ssi_.next_event();
     woken_ += due ? 1 : 0;
     if (here || due) {
       ssi_.advance(now_);
@@ -105,6 +106,7 @@ class ModelSsiRig {
 
  private:
   Ssi ssi_;
+  const bool awake_;
   SsiAccess access_{};
   bool pending_ = false;
   unsigned clk_ = 0xFF;
@@ -113,17 +115,24 @@ class ModelSsiRig {
   Tick now_ = 0;
 };
 
-// Both; `difference` is empty as long as they agree.
-class LockstepSsiRig {
+// It executes each edge.
+class AwakeSsiRig : public ModelSsiRig {
+ public:
+  AwakeSsiRig() : ModelSsiRig(true) {}
+};
+
+// The model and a twin; `difference` is empty as long as they agree.
+template <class Twin>
+class SsiPair {
  public:
   std::string difference;
   Tick seeded_bug_at = kNever;  // negative control: clock 1 as the comparison sees it is wrong at this tick
 
-  Tick now() const { return rtl_.now(); }
-  unsigned clk() const { return rtl_.clk(); }
+  Tick now() const { return twin_.now(); }
+  unsigned clk() const { return twin_.clk(); }
   template <class F>
   void both(const F& f) {
-    f(rtl_);
+    f(twin_);
     f(model_);
   }
   void reset(bool geo) {
@@ -140,18 +149,19 @@ class LockstepSsiRig {
   }
   void tick() {
     both([](auto& r) { r.tick(); });
-    if (!engines_compared()) return;
-    if (difference.empty() && (rtl_.clk() ^ (now() == seeded_bug_at ? 1u : 0u)) != model_.clk())
+    if (std::is_same_v<Twin, RtlSsiRig> && !engines_compared()) return;
+    if (difference.empty() && (twin_.clk() ^ (now() == seeded_bug_at ? 1u : 0u)) != model_.clk())
       difference = "clocks differ at tick " + std::to_string(now());
-    if (difference.empty() && rtl_.taken() != model_.taken())
+    if (difference.empty() && twin_.taken() != model_.taken())
       difference = "a read differs at tick " + std::to_string(now());
   }
-  std::uint32_t taken() const { return rtl_.taken(); }
+  std::uint32_t taken() const { return twin_.taken(); }
 
  private:
-  RtlSsiRig rtl_;
+  Twin twin_;
   ModelSsiRig model_;
 };
+using LockstepSsiRig = SsiPair<RtlSsiRig>;
 
 // What a test does with either: an access, and time in which encoders look at the clocks.
 template <class Rig>

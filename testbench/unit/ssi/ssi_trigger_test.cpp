@@ -89,6 +89,29 @@ TYPED_TEST(SsiTriggers, BrickTakesOneShotOnly) {
   EXPECT_EQ(this->edges.size(), 100u);
 }
 
+// Bit 12 is there up to the edge of clk_ref that clears it (servo-ic:11.3/5): a second fall of SERVO that this edge or
+// one before finds is refused, one that the next edge finds is none of the channel's.
+TYPED_TEST(SsiTriggers, BrickCountsNoTriggerBehindTheOneShot) {
+  BRICK_COVERS("SSI-1");
+  for (Tick phase = 0; phase < 2 * kTicksPerRef; ++phase)
+    for (const Tick later : {2, 3, 4}) {
+      SCOPED_TRACE(::testing::Message() << phase << ", " << later << " later");
+      this->rig.reset(false);
+      this->rig.write(true, 0x2F, 0x180302);
+      this->rig.write(true, brick_word(2), 0x3400 | 24);
+      this->rig.run(30 + phase);
+      const Tick first = this->rig.now() + 1, clears = (first / kTicksPerRef + 1) * kTicksPerRef;
+      this->rig.nets(true, false);
+      this->rig.run(later - 1);
+      this->rig.nets(true, true);
+      this->rig.run(1);
+      this->rig.nets(true, false);
+      this->rig.run(20);
+      EXPECT_EQ(regs::ssi_brick::refused::kCount.get(this->rig.read(true, brick_word(2) + 1)),
+                first + later <= clears ? 1u : 0u);
+    }
+}
+
 TYPED_TEST(SsiTriggers, BrickIsSilentWithoutProtocolEnableOrDriver) {
   BRICK_COVERS("SSI-1");
   struct Case {
