@@ -262,10 +262,6 @@ class Converter {
           next = peek();
         }
         starts = next == '(' || next == '$' || is_digit(next) || (next == '.' && is_digit(at(at_ + 1)));
-        if (starts && s.argument == Argument::kCode && next != '(') {
-          (void)unsigned_number(false);
-          starts = !accept("->") && !accept("..") && peek() != ',';
-        }
     }
     at_ = kept;
     return starts;

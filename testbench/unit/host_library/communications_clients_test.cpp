@@ -183,6 +183,28 @@ TEST_F(CommunicationsProcessorTest, FlushEndsTheClientsOwnAnswerAndNoOthers) {
   EXPECT_EQ(take(), (Replies{{1, kNul}, {1, "@"}}));
 }
 
+// The client's answer is one that was not under way yet when the flush came; what is no flush waits for it.
+TEST_F(CommunicationsProcessorTest, FlushEndsWhatBeginsBeforeIt) {
+  fake().control = [](char c) {
+    if (c == 0x18) fake().later.clear();
+    return Bytes(c == 0x18 ? 1 : 0, c);
+  };
+  fake().thinking = 100 * kMs;
+  request(2, packet(Packet::kGetResponse, "slow"));
+  run(10 * kMs);
+  request(1, packet(Packet::kSendLine, "old"));
+  request(1, packet(Packet::kFlush));
+  run(120 * kMs);
+  EXPECT_EQ(take(), (Replies{{2, "slow\r\x06"}, {1, "@"}, {1, "@"}}));
+  EXPECT_EQ(ready(), Bytes("\0\0", 2));
+  request(1, packet(Packet::kSendLine, "a"));
+  request(1, packet(Packet::kSendLine, "b"));
+  run(300 * kMs);
+  EXPECT_EQ(take(), (Replies{{1, "@"}, {1, "@"}}));
+  EXPECT_EQ(fetch(), "a\r\x06");
+  EXPECT_EQ(fetch(), "b\r\x06");
+}
+
 // ethernet:6/5
 TEST_F(CommunicationsProcessorTest, WhatStopsThingsWaitsForNobody) {
   std::string seen;

@@ -212,6 +212,12 @@ TEST_F(CommunicationsProcessorTest, WriteBufferStopsAtTheFirstLineThatIsRefused)
   EXPECT_EQ(ready(), Bytes("\0\0", 2)) << "answers are dropped";
 }
 
+// NUL alone ends a line there; what may end one elsewhere is a blank.
+TEST_F(CommunicationsProcessorTest, WriteBufferKeepsItsLinesWhole) {
+  EXPECT_EQ(ask(packet(Packet::kWriteBuffer, Bytes("=1\r2\0=3\r\0=4 \r\n\0 ", 16))), Bytes(4, '\0'));
+  EXPECT_EQ(lines_, (Lines{"=1 2", "=3 ", "=4"}));
+}
+
 // Line number in two bytes, low one first; error number; 80. Lines that cost one byte and their NUL: 700 fit.
 TEST_F(CommunicationsProcessorTest, WriteBufferTellsEachFieldOfItsAnswer) {
   Bytes error = "001";
@@ -264,6 +270,24 @@ TEST_F(CommunicationsProcessorTest, ControlResponseGivesTheAnswerOfEachReport) {
       EXPECT_EQ(ready(), Bytes("\0\0", 2)) << "nothing is left of " << int{c};
     }
   }
+}
+
+// 1400 bytes, as of any reply; what stands around its lines is no text.
+TEST_F(CommunicationsProcessorTest, AReportIsAsLongAsAReplyMayBe) {
+  Bytes text;
+  fake().control = [&](char c) { return c == 0x10 ? text + "\r\x06" : Bytes(); };
+  for (const std::size_t length : {1u, 1398u, 1399u, 1400u, 1401u, 3000u}) {
+    text = "\n" + Bytes(length, 'x');
+    const Bytes reply = ask(packet(Packet::kControlResponse, "", 0x10, 0, 0xC0));
+    EXPECT_EQ(reply, (Bytes(length, 'x') + "\r").substr(0, 1400)) << length;
+    EXPECT_EQ(ready(), Bytes("\0\0", 2));
+  }
+  text.clear();
+  EXPECT_EQ(ask(packet(Packet::kControlResponse, "", 0x10, 0, 0xC0)), "\r");
+  fake().control = [](char c) { return c == 0x10 ? "0 0" : c == 0x18 ? "\x18" : ""; };
+  EXPECT_EQ(ask(packet(Packet::kControlResponse, "", 0x10, 0, 0xC0)), "0 0\r") << "whatever it ends with";
+  fake().control = nullptr;
+  EXPECT_EQ(ask(packet(Packet::kControlResponse, "", 0x10, 0, 0xC0)), kNul) << "no answer at all";
 }
 
 // Nobody waits for silence, which takes 5 ms.
@@ -400,6 +424,28 @@ TEST_F(CommunicationsProcessorTest, AControllerThatNeverAnswersIsFound) {
   fake().control = nullptr;
   CommunicationsProcessor other(bus_, {});
   EXPECT_FALSE(other.start(100 * kMs));
+}
+
+// Asked each 20 ms, until a watchdog trips.
+TEST_F(CommunicationsProcessorTest, AStartEndsWithItsTime) {
+  int asked = 0;
+  fake().control = [&](char c) {
+    asked += c == 0x07 ? 1 : 0;
+    return Bytes();
+  };
+  CommunicationsProcessor other(bus_, {});
+  Tick begin = bus_.now();
+  EXPECT_FALSE(other.start(90 * kMs));
+  EXPECT_GE(bus_.now() - begin, 90 * kMs);
+  EXPECT_LE(bus_.now() - begin, 101 * kMs);
+  EXPECT_EQ(asked, 5);
+  EXPECT_FALSE(other.busy());
+  BoardOutputs tripped = machine_.outputs();
+  tripped.set(pin::kWdo, 1);
+  fake().planned.emplace_back(bus_.now() + kMs, tripped);
+  begin = bus_.now();
+  EXPECT_FALSE(other.start(500 * kMs));
+  EXPECT_LE(bus_.now() - begin, 21 * kMs);
 }
 
 TEST_F(CommunicationsProcessorTest, AFirmwareThatStartsLateIsWaitedFor) {

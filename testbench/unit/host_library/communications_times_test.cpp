@@ -73,6 +73,20 @@ TEST_F(CommunicationsTimes, FetchesWaitHalfASecondWhenThereIsNothing) {
       500 * kMs, [this] { return fetch(); }, kNul);
 }
 
+// Each from when it is its turn, not from when it came.
+TEST_F(CommunicationsTimes, FetchesThatComeTogetherWaitOneAfterTheOther) {
+  for (int i = 0; i < 2; ++i) request(1, packet(Packet::kGetBuffer, "", 0, 0, 0xC0));
+  run(499 * kMs);
+  EXPECT_EQ(take(), Replies{});
+  run(3 * kMs);
+  EXPECT_EQ(take(), (Replies{{1, kNul}}));
+  run(496 * kMs);
+  EXPECT_EQ(take(), Replies{});
+  run(6 * kMs);
+  EXPECT_EQ(take(), (Replies{{1, kNul}}));
+  EXPECT_FALSE(processor_->busy());
+}
+
 // Of the client's time: a hundredth of a second of the controller's when that is fifty times as slow.
 TEST_F(CommunicationsTimes, FetchesOfASlowControllerWaitForHalfASecondOfTheClient) {
   const auto nothing = [this] { return fetch(); };
@@ -118,6 +132,44 @@ TEST_F(CommunicationsTimes, AnAnswerThatStandsReadyIsTakenHoweverLate) {
   bus_.wait(600 * kMs);  // of somebody else's
   run(5 * kMs);
   EXPECT_EQ(take(), (Replies{{1, "ver\r\x06"}}));
+}
+
+// To the tick, from the cycle of the last character, ^N left out: what the rule says and not a clock more.
+TEST_F(CommunicationsTimes, EachWaitIsExact) {
+  constexpr TimeFs kCycle = 120 * kFsPerNs, kRise = 60 * kFsPerNs, kLeft = 40 * kFsPerNs;  // of a typical host
+  Tick replied = 0, quiet_since = 0;
+  processor_->on_reply = [&](CommunicationsProcessor::Client, const Bytes& reply) {
+    replied = bus_.now();
+    replies_.emplace_back(1, reply);
+    for (const auto& [seen, before, after] : fake().changes) {
+      const bool is_read = !before.isa_ior_n && after.isa_ior_n, is_write = !before.isa_iow_n && after.isa_iow_n;
+      if (after.isa_sa != 0x217 || !(is_read || (is_write && (before.isa_sd & 0xFF) != kAskMark))) continue;
+      const TimeFs rise = (tick_to_fs(seen) - kRise) / kCycle * kCycle + kRise;
+      quiet_since = fs_to_tick(rise + kLeft) - 1;
+    }
+  };
+  const auto expect_wait = [&](std::int64_t ms, const Packet& one) {
+    fake().changes.clear();
+    ask(one);
+    EXPECT_EQ(replied - quiet_since, ns_to_ticks(ms * 1'000'000)) << ms;
+  };
+  const auto line = [](const Bytes& text) { return packet(Packet::kGetResponse, text); };
+  fake().control = [](char c) { return Bytes(c == kAskMark ? 1 : 0, '\0'); };  // no echo of ^X
+  fake().controller = [](const Bytes& text) { return text == "bell" ? "\x07" : text == "none" ? "" : "x"; };
+  expect_wait(5, line("bell"));
+  for (const auto& [value, wait] : {std::pair(0u, 10), std::pair(1u, 1), std::pair(50u, 50), std::pair(500u, 500),
+                                    std::pair(501u, 500), std::pair(0xFFFFu, 500)})
+    expect_wait(wait, packet(Packet::kFlush, "", value));
+  expect_wait(10, packet(Packet::kControlResponse, "", 0x18, 0, 0xC0));
+  expect_wait(1, line("none"));  // behind the answer to ^N
+  fake().control = nullptr;
+  expect_wait(500, line("none"));
+  expect_wait(10'000, line("none SAVE"));
+  fake().changes.clear();
+  run(kMs);
+  const Tick begin = bus_.now();
+  ask(packet(Packet::kGetBuffer, "", 0, 0, 0xC0));
+  EXPECT_EQ(replied - begin, ns_to_ticks(500'000'000));
 }
 
 // ------------------------------------------------------------------------------------------------- no end of an answer

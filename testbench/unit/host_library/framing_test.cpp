@@ -338,6 +338,19 @@ TEST_F(FramingTest, TextsBehindErrorsOfProgramsAreWhole) {
   EXPECT_EQ(reply("P1"), (Lines{"25"}));
 }
 
+// Behind the acknowledge of a line without data, and in front of what a program sends then.
+TEST_F(FramingTest, ALateChecksumIsNoText) {
+  controller.before_line = [&] { controller.i4 = 1; };
+  EXPECT_EQ(reply("X"), Lines{});
+  controller.before_line = nullptr;
+  const std::string text = controller.data("TEXT");
+  FakeMachine& fake = FakeMachine::last();
+  fake.to_host.insert(fake.to_host.end(), text.begin(), text.end());
+  link.poll();
+  EXPECT_EQ(link.take_unsolicited(), Lines{"TEXT"});
+  EXPECT_EQ(reply("P1"), (Lines{"25"}));
+}
+
 TEST_F(FramingTest, EndsWhereTheControllerIsNeverQuiet) {
   FakeMachine& fake = FakeMachine::last();
   fake.sends = [] { return "X"; };
@@ -354,6 +367,8 @@ TEST_F(FramingTest, ConnectsAgainAfterARestartAnywhereInALine) {
     EXPECT_TRUE(link.framing() == (Framing{2, 0})) << line;
     EXPECT_EQ(reply("P1"), (Lines{"25"})) << line;
   }
+  EXPECT_EQ(reply("I3=1"), Lines{});
+  EXPECT_EQ(reply("I4=1 P1 $$$"), (Lines{"25"})) << "a checksum on the way, none before and behind";
   controller.i3 = 2;
   EXPECT_EQ(reply("UUU $$$"), (Lines{"ERR003"})) << "never reached";
   EXPECT_EQ(reply("P1"), (Lines{"25"}));
