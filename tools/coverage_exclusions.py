@@ -83,6 +83,7 @@ def leave_out(root, exclusions, lines, points, enough):
         return True
 
     lines = {key: times for key, times in lines.items() if stays("line", *key, "", times)}
-    points = {key: times for key, times in points.items() if stays(key[0], *key[1:3], key[3].strip(), times)}
+    points = {key: times for key, times in points.items()
+              if stays(*key[:3], key[3].partition(" ")[2], times)}  # behind the column
     mistakes += [f"{exclusion}: nothing of it was counted" for exclusion in exclusions if not left[exclusion]]
     return lines, points, left, mistakes

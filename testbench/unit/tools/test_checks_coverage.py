@@ -121,10 +121,10 @@ class Rows(Tree):
 
 SOURCE = "module watchdog (\n  if (a) b <= 1;\n  else b <= 0;\n  logic [1:0] a_q;\n"
 LINES = {("systemc/board/watchdog.h", 7): 0}
-POINTS = {("line", "rtl/board/watchdog.sv", 2, " block"): 3,
-          ("branch", "rtl/board/watchdog.sv", 3, " else"): 0,
-          ("toggle", "rtl/board/watchdog.sv", 4, " a_q[0]"): 2,
-          ("toggle", "rtl/board/watchdog.sv", 4, " a_q[1]"): 1}
+POINTS = {("line", "rtl/board/watchdog.sv", 2, "3 block"): 3,
+          ("branch", "rtl/board/watchdog.sv", 3, "3 else"): 0,
+          ("toggle", "rtl/board/watchdog.sv", 4, "15 a_q[0]"): 2,
+          ("toggle", "rtl/board/watchdog.sv", 4, "15 a_q[1]"): 1}
 
 
 class Exclusions(Tree):
