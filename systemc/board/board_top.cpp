@@ -126,12 +126,6 @@ void BoardTop::schedule(Parts which) {
   first_ = first(0, kBusy, seldom_);
 }
 
-void BoardTop::wake() {
-  next_.fill(now_ + 1);
-  seldom_ = first_ = now_ + 1;
-  gate_ics_.wake(now_ + 1);
-}
-
 // The edge t. What looks at a register of another block does so before any block executes the edge.
 void BoardTop::execute(Tick t) {
   Parts changed = first_ <= t ? due(t) : 0;

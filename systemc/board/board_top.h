@@ -56,10 +56,6 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
 
   MotorDigest* motor_digest() override { return this; }
 
-  // Every block executes the next edge, whatever it has to do there: a board that is woken before each edge shows what
-  // one shows that sleeps (systemc/core/model_block.h).
-  void wake();
-
   // Blocks behind the pins, for SystemC users and tests; the ICs stand at now().
   ServoIc* servo_ic(unsigned index) { return gate_ics_.servo_ic(index, now_); }
   MacroIc* macro_ic(unsigned index) { return gate_ics_.macro_ic(index, now_); }
@@ -68,6 +64,8 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
   HostPort& host_port() { return host_port_; }
 
  private:
+  friend class BoardWaker;  // testbench/unit/cosim/board_asleep_test.cpp
+
   ConverterWords dac_lines(unsigned ic) override {
     const ServoChannels* channels = gate_ics_.channels(ic, now_);
     return channels != nullptr ? channels->dac_lines() : ConverterWords{};

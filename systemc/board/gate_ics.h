@@ -39,10 +39,6 @@ class GateIcs {
   Tick next_clock_event() const { return next_clock_; }  // PHASE and SERVO pins only
   // Executes the edges of what may have such a change by t. Returns true when a clock pin may have changed.
   bool advance(Tick t);
-  void wake(Tick t) {  // whoever drives the clocks or is watched executes the edge t
-    look_.fill(t);
-    next_clock_ = next_look_ = t;
-  }
 
   // Registers; `ic` as in BoardInputs::fitted. The edges up to t have been executed with the inputs as they were set.
   std::uint32_t read(unsigned ic, bool x, std::uint32_t addr, Tick t) const;
@@ -77,6 +73,8 @@ class GateIcs {
   }
 
  private:
+  friend class BoardWaker;
+
   // Channels of servo IC 0 and 1 whose EQU interrupts.
   unsigned interrupting(unsigned ic) const { return ic < 2 ? interrupting_ >> 4 * ic & 0xF : 0; }
   std::uint32_t interrupting_ics() const {

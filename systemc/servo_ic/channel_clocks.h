@@ -23,8 +23,8 @@ class ChannelDivider {
   // The edge of the k-th start from here.
   Tick after(std::int64_t k, unsigned n) const { return next_ + (k - 1) * (kTicksPerRef << n); }
 
-  // How many periods start up to t; n has not changed since the present one started.
-  std::int64_t count(Tick t, unsigned n) const { return t < next_ ? 0 : ((t - next_) / kTicksPerRef >> n) + 1; }
+  // How many periods start up to t, at least the next one; n has not changed since the present one started.
+  std::int64_t count(Tick t, unsigned n) const { return ((t - next_) / kTicksPerRef >> n) + 1; }
   bool steady(unsigned n) const { return n_ == n; }
   void take_steadily(Tick t) { take(t, n_); }  // the same with the divider as it is
 
@@ -62,9 +62,9 @@ class ChannelStrobe {
   // From the edge t on, a bit clock that finds no stream under way starts one, unless PHASE has done so.
   void ask(Tick t) { asked_ = t; }
 
-  // Executes the edges up to t; `rise`: PHASE rises at t, an edge of clk_ref. `load` (with the number of
-  // bits that are left out of the stream before) and `sample` (with the number of the first bit and how many bits) are
-  // called in the order of their edges.
+  // Executes the edges up to t; `rise`: PHASE rises at t, the first edge of clk_ref that has not been executed. `load`
+  // (with the number of bits that are left out of the stream before) and `sample` (with the number of the first bit and
+  // how many bits) are called in the order of their edges.
   template <class Load, class Sample>
   void advance(Tick t, bool rise, unsigned n, std::uint32_t word, Load load, Sample sample) {
     if (idle() && !rise && divider_.steady(n)) {  // the divider is executed when it is looked at
@@ -78,7 +78,7 @@ class ChannelStrobe {
       if (ce > t) break;
       if (left_ == 0 && ce >= asked_) pending_ = true;
       if (left_ == 0 && !pending_ && !(rise && ce == t)) {
-        divider_.take(std::min(rise ? t - 1 : t, asked_ - 1), n);  // nothing to send
+        divider_.take(std::min(t, asked_ - 1), n);  // nothing to send
         now_ = std::max(now_, ce);
         continue;
       }

@@ -12,9 +12,9 @@ namespace brick {
 class ChannelPfm {
  public:
   struct Inputs {
-    bool run = false;
-    std::uint32_t command = 0;  // 24 bits, signed
-    unsigned width = 15;        // PFM_CLK periods, 0 as 1
+    bool run;
+    std::uint32_t command;  // 24 bits, signed
+    unsigned width;         // PFM_CLK periods, 0 as 1
   };
 
   bool pulse() const { return pulse_; }

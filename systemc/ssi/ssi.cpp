@@ -11,27 +11,27 @@ bool has(unsigned mask, unsigned n) { return (mask >> n & 1) != 0; }
 }  // namespace
 
 // Which word of which channel a register is: those of a Geo PMAC's channel 2 stand $20 addresses after channel 1's, of
-// a Brick's channels four addresses after each other, of its groups sixteen.
+// a Brick's channels four addresses after each other, of its groups sixteen, to the end of the page.
 Ssi::Where Ssi::where(bool x, unsigned address) const {
-  const auto is = [x, address](const regs::Register& r, unsigned stride, unsigned count) {
-    const unsigned from = address - (r.address & kPage);
-    return x == (r.space == 'X') && address <= kPage && from % stride == 0 && from / stride < count;
+  const auto is = [x, address](const regs::Register& r, unsigned stride) {
+    const unsigned first = r.address & kPage;
+    return x == (r.space == 'X') && address >= first && (address - first) % stride == 0;
   };
   if (geo) {
     const unsigned channel = address >> 5 & 1;
-    if (is(regs::ssi_geo::kControl, 0x20, 2)) return {Place::kControl, channel};
-    if (is(regs::ssi_geo::kPosition, 0x20, 2)) return {Place::kPosition, channel};
-    if (is(regs::ssi_geo::kRefused, 0x20, 2)) return {Place::kRefused, channel};
-    if (is(regs::ssi_geo::kTiming, 0x20, 1)) return {Place::kTiming, 0};
-    return {Place::kNone, 0};
+    if (is(regs::ssi_geo::kControl, 0x20)) return {Place::kControl, channel};
+    if (is(regs::ssi_geo::kPosition, 0x20)) return {Place::kPosition, channel};
+    if (is(regs::ssi_geo::kRefused, 0x20)) return {Place::kRefused, channel};
+    if (x && address == (regs::ssi_geo::kTiming.address & kPage)) return {Place::kTiming, channel};
+    return {Place::kNone, channel};
   }
   const unsigned channel = address >> 2 & 7;
-  if (is(regs::ssi_brick::kControl, 4, 8)) return {Place::kControl, channel};
-  if (is(regs::ssi_brick::kPosition, 4, 8)) return {Place::kPosition, channel};
-  if (is(regs::ssi_brick::kPositionHigh, 4, 8)) return {Place::kHigh, channel};
-  if (is(regs::ssi_brick::kRefused, 4, 8)) return {Place::kRefused, channel};
-  if (is(regs::ssi_brick::kTiming, 16, 2)) return {Place::kTiming, channel};
-  return {Place::kNone, 0};
+  if (is(regs::ssi_brick::kControl, 4)) return {Place::kControl, channel};
+  if (is(regs::ssi_brick::kPosition, 4)) return {Place::kPosition, channel};
+  if (is(regs::ssi_brick::kPositionHigh, 4)) return {Place::kHigh, channel};
+  if (is(regs::ssi_brick::kRefused, 4)) return {Place::kRefused, channel};
+  if (is(regs::ssi_brick::kTiming, 16)) return {Place::kTiming, channel};
+  return {Place::kNone, channel};
 }
 
 std::uint32_t Ssi::read(bool x, unsigned address) const {

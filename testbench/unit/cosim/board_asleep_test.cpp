@@ -12,6 +12,19 @@
 #include "testbench/unit/random_seed.h"
 
 namespace brick {
+
+// Every block executes the next edge, whatever it has to do there, and whoever drives the clocks or is watched.
+class BoardWaker {
+ public:
+  static void wake(BoardTop& board) {
+    const Tick next = board.now_ + 1;
+    board.next_.fill(next);
+    board.seldom_ = board.first_ = next;
+    board.gate_ics_.look_.fill(next);
+    board.gate_ics_.next_clock_ = board.gate_ics_.next_look_ = next;
+  }
+};
+
 namespace {
 
 // Both, as one board. The motors of the one that is awake are watched, those of the other are asked now and then.
@@ -52,7 +65,7 @@ class TwinBoard : public Board {
     is_.clear();
     asleep_.run_until(limit);
     while (awake_.now() < limit) {
-      awake_.wake();
+      BoardWaker::wake(awake_);
       awake_.run_until(awake_.now() + 1);
     }
     compare();

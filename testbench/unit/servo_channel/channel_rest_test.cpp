@@ -26,6 +26,30 @@ TEST_F(ChannelTest, EquOfAPositionAtRestIsNoEvent) {
   }
 }
 
+// The pulse train asks for the edges of its pulses alone: by sixteenths of the range a pulse comes with each 16th
+// PFM_CLK and is three long (servo-ic:5.12), off it asks for none.
+TEST(ChannelPfmEvents, AreTheEdgesOfThePulses) {
+  for (const std::uint32_t command : {0x100000u, 0xF00000u}) {  // up, down
+    const ChannelPfm::Inputs in{true, command, 3}, off{false, command, 3};
+    ChannelPfm pfm;
+    EXPECT_EQ(pfm.periods_to_change(off), kNever);
+    pfm.advance(pfm.periods_to_pulse(in), in);  // the first one downwards comes at once
+    for (int pulse = 0; pulse < 3; ++pulse) {
+      EXPECT_TRUE(pfm.pulse());
+      EXPECT_EQ(pfm.periods_to_change(in), 3);
+      pfm.advance(2, in);
+      EXPECT_EQ(pfm.periods_to_change(in), 1);
+      pfm.advance(1, in);
+      EXPECT_FALSE(pfm.pulse());
+      EXPECT_EQ(pfm.periods_to_change(in), 13);
+      EXPECT_EQ(pfm.periods_to_change(off), kNever);
+      EXPECT_TRUE(pfm.advance(13, in));
+    }
+    pfm.stop();
+    EXPECT_EQ(pfm.periods_to_change(off), kNever);
+  }
+}
+
 // systemc/core/motor_digest.h: what TOP is on for, less what BOT is, here to the tick from the pins. Commands of one
 // period each, so that a switch may be on for any number of ticks, one too.
 TEST(ChannelPwmTimes, AreThoseOfThePinsHoweverLongTheStretch) {

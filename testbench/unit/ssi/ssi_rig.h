@@ -2,6 +2,8 @@
 // of clk_ref. The model sleeps until its own next event: a wrong prediction shows up as a difference to the RTL.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -91,8 +93,10 @@ class ModelSsiRig {
       taken_ = ssi_.read(access_.x, access_.address);
       if (!access_.write) ssi_.read_taken(access_.x, access_.address);
     }
+    const Tick next = ssi_.next_event();
+    if (next <= now_) ADD_FAILURE() << "at tick " << now_ << " it asks for " << next;
     ++now_;
-    const bool due = awake_ || now_ >= ssi_.next_event();
+    const bool due = awake_ || now_ >= next;
     woken_ += due ? 1 : 0;
     if (here || due) {
       ssi_.advance(now_);
