@@ -110,7 +110,7 @@ void Ssi::end_shots(Tick t) {
 void Ssi::advance(Tick t) {
   while (now_ < t) {
     Tick next = nets_moved() ? now_ + 1 : t;
-    for (const Group& g : group_) next = std::min({next, g.next, g.load});
+    for (const Group& g : group_) next = g.loads != 0 ? now_ + 1 : std::min(next, g.next);
     pass(next - 1 - now_);
     for (unsigned i = 0; i < kGroups; ++i) edge(next, i);
     pass(1);
@@ -139,7 +139,7 @@ void Ssi::edge(Tick t, unsigned group) {
   const ssi::Timing timing = this->timing(g);
   if (nets_moved() && triggered(g) && g.state != State::kIdle)
     for (Channel& c : g.channel) c.refused = static_cast<std::uint8_t>(c.refused + (control(c).enable() ? 1 : 0));
-  if (t == g.load) load(g);
+  if (g.loads != 0) load(g);
   if (g.state == State::kIdle) {
     if (!nets_moved() || !triggered(g)) return;
     start(t, g);
@@ -159,7 +159,7 @@ void Ssi::edge(Tick t, unsigned group) {
       fall(group);
       break;
     case State::kLow:
-      rise(t, group);
+      rise(group);
       if (std::any_of(g.channel.begin(), g.channel.end(), [](const Channel& c) { return c.active; })) {
         enter(g, State::kHigh, timing.high_time());
       } else {
@@ -207,7 +207,7 @@ void Ssi::fall(unsigned group) {
   }
 }
 
-void Ssi::rise(Tick t, unsigned group) {
+void Ssi::rise(unsigned group) {
   Group& g = group_[group];
   for (unsigned i = 0; i < kChannelsEach; ++i) {
     Channel& c = g.channel[i];
@@ -222,12 +222,11 @@ void Ssi::rise(Tick t, unsigned group) {
     if (--c.rises > 0) continue;
     c.active = false;
     g.loads |= 1u << i;
-    g.load = t + 1;
   }
 }
 
 void Ssi::load(Group& g) {
-  for (unsigned i = 0; i < kChannelsEach; ++i) {
+  for (unsigned i = 0; g.loads >> i != 0; ++i) {
     if (!has(g.loads, i)) continue;
     Channel& c = g.channel[i];
     const ssi::Control control = this->control(c);
@@ -235,7 +234,6 @@ void Ssi::load(Group& g) {
     c.parity_error = (control.odd() && !c.odd) || (control.even() && c.odd);
   }
   g.loads = 0;
-  g.load = kNever;
 }
 
 }  // namespace brick

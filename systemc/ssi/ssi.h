@@ -20,9 +20,9 @@ class Ssi final : public sc_core::sc_module, public ModelBlock {
 
   explicit Ssi(const sc_core::sc_module_name& name) : sc_module(name) {}
 
-  bool geo = false;                 // strap: which product
-  bool phase = true, servo = true;  // nets
-  std::uint8_t data = 0xFF;         // pins, bit n - 1 for channel n
+  bool geo = false;       // strap: which product
+  bool phase{}, servo{};  // nets
+  std::uint8_t data{};    // pins, bit n - 1 for channel n
 
   std::uint8_t clk() const { return clk_; }
 
@@ -41,20 +41,19 @@ class Ssi final : public sc_core::sc_module, public ModelBlock {
   struct Channel {
     std::uint32_t control = 0, shift = 0, position = 0, high = 0;
     std::uint8_t refused = 0;
-    unsigned rises = 0;  // left
-    bool active = false, first = false, odd = false, parity_error = false;
-    bool gray = false;        // of a Geo PMAC that of the last mode that was on
+    unsigned rises{};  // left
+    bool active{}, first{}, odd{}, parity_error{};
+    bool gray{};              // of a Geo PMAC that of the last mode that was on
     Tick shot_ends = kNever;  // edge that takes the enable bit away
   };
   struct Group {
     std::uint32_t word = 0;
     State state = State::kIdle;
-    Tick begin = 0;           // of the frame
-    std::int64_t cycles = 0;  // from there to the next change of state
-    Tick next = kNever;       // when that is
-    unsigned periods = 0;     // of the delay, left
-    unsigned loads = 0;       // channels whose word is whole, to be loaded
-    Tick load = kNever;
+    Tick begin{};           // of the frame
+    std::int64_t cycles{};  // from there to the next change of state
+    Tick next = kNever;     // when that is
+    unsigned periods{};     // of the delay, left
+    unsigned loads{};       // channels whose word is whole: the next edge loads them
     std::array<Channel, kChannelsEach> channel;
   };
   enum class Place { kControl, kPosition, kHigh, kRefused, kTiming, kNone };
@@ -74,7 +73,7 @@ class Ssi final : public sc_core::sc_module, public ModelBlock {
   void enter(Group& g, State state, std::int64_t cycles);
   void start(Tick t, Group& g);
   void fall(unsigned group);
-  void rise(Tick t, unsigned group);
+  void rise(unsigned group);
   void load(Group& g);
 
   std::array<Group, kGroups> group_;
