@@ -1,11 +1,15 @@
-// firmware/base/mathematics.c at and behind the ends of its ranges (firmware:1.7, firmware:10/9). Values are literals
-// of mathematics, or the C library's where a literal would say nothing.
+// firmware/base/mathematics.c and float48.c at and behind the ends of their ranges (firmware:1.7, firmware:10/9).
+// Values are literals of mathematics, or the C library's where a literal would say nothing.
 #include <cfloat>
 #include <cmath>
 #include <limits>
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
+
+extern "C" {
+#include "firmware/base/float48.h"
+}
 
 namespace {
 
@@ -185,6 +189,40 @@ TEST(Mathematics, NumbersTakenApartAndPutTogether) {
       if (!std::isfinite(value)) continue;
       EXPECT_EQ(math_from_fixed(mantissa, exponent - static_cast<int>(bits)), value) << x << " in " << bits;
     }
+}
+
+// 2^47 degrees are 248 more than whole turns.
+TEST(Mathematics, TheLargestAngleIsOneStill) {
+  near(math_sine(kEnd, 1), std::sin(248 * kPi / 180), "SIN");
+  near(math_cosine(-kEnd, 1), std::cos(248 * kPi / 180), "COS");
+  EXPECT_EQ(math_sine(kEnd * (1 + DBL_EPSILON), 1), 0.0) << "of more hardly anything is left";
+}
+
+// The 48-bit word of P and Q variables (firmware:1.2/5) where its mantissa is not normal, and where no double has it.
+constexpr int kBias = 2047, kMantissaBits = 35;
+
+float48 word(std::int64_t mantissa, int exponent) {
+  const auto bits = static_cast<std::uint64_t>(mantissa);
+  return {static_cast<std::uint32_t>(bits >> 12 & 0xFFFFFF),
+          static_cast<std::uint32_t>((bits & 0xFFF) << 12 | static_cast<unsigned>(exponent))};
+}
+
+TEST(Float48, AWordThatIsNotNormalHasItsValue) {
+  for (int shift = 0; shift < kMantissaBits - 1; ++shift)
+    for (const std::int64_t sign : {1, -1}) {
+      const std::int64_t mantissa = sign * ((std::int64_t{3} << (kMantissaBits - 2)) >> shift);
+      EXPECT_EQ(float48_unpack(word(mantissa, kBias + 5)), std::ldexp(static_cast<double>(mantissa), 5 - kMantissaBits))
+          << "shifted by " << shift;
+    }
+}
+
+// 0.75 * 2^(E - 2047) is 1.5 * 2^-1022 with E = 1026.
+TEST(Float48, WhatIsBelowTheLeastDoubleIsZero) {
+  const std::int64_t mantissa = std::int64_t{3} << (kMantissaBits - 2);
+  EXPECT_EQ(float48_unpack(word(mantissa, 1026)), std::ldexp(1.5, -1022));
+  EXPECT_EQ(float48_unpack(word(mantissa, 1025)), 0.0);
+  EXPECT_EQ(float48_unpack(word(mantissa >> 1, 1026)), 0.0) << "not normal";
+  EXPECT_EQ(float48_unpack(word(mantissa, 0)), 0.0);
 }
 
 }  // namespace
