@@ -161,8 +161,7 @@ void IsaMaster::stretch(bool ready) {
   result_.stuck = !ready && high_ - start_ > isa::kLongestStretch;
   if (ready || result_.stuck) return go(Step::kSample);
   if (all_.exact_ready) return go(Step::kRise);
-  high_ += isa::kBclk;
-  go(Step::kStretch);
+  high_ += isa::kBclk;  // and once more
 }
 
 std::uint16_t IsaMaster::data_bus(const BoardOutputs& board) {

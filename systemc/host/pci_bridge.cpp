@@ -12,7 +12,7 @@ constexpr std::uint32_t kIntA = 1;
 
 std::uint32_t enabled(unsigned bytes) {
   std::uint32_t mask = 0;
-  for (unsigned n = 0; n < 4; ++n) mask |= (bytes >> n & 1) != 0 ? 0xFFu << 8 * n : 0;
+  for (unsigned n = 0; bytes >> n != 0; ++n) mask |= (bytes >> n & 1) != 0 ? 0xFFu << 8 * n : 0;
   return mask;
 }
 
@@ -129,20 +129,20 @@ void PciBridge::write_configuration(std::uint32_t address, std::uint32_t value, 
 
 std::uint32_t PciBridge::read_io(std::uint32_t offset, unsigned bytes) {
   std::uint32_t value = 0;
-  for (unsigned n = 0; n < 4; ++n)
+  for (unsigned n = 0; bytes >> n != 0; ++n)
     if ((bytes >> n & 1) != 0) value |= static_cast<std::uint32_t>(bus_->read_io(local_.io_base + offset + n)) << 8 * n;
   return value;
 }
 
 void PciBridge::write_io(std::uint32_t offset, std::uint32_t value, unsigned bytes) {
-  for (unsigned n = 0; n < 4; ++n)
+  for (unsigned n = 0; bytes >> n != 0; ++n)
     if ((bytes >> n & 1) != 0) bus_->write_io(local_.io_base + offset + n, static_cast<std::uint8_t>(value >> 8 * n));
 }
 
 // The low half first.
 std::uint32_t PciBridge::read_memory(std::uint32_t offset, unsigned bytes) {
   std::uint32_t value = 0;
-  for (unsigned half = 0; half < 4; half += 2)
+  for (unsigned half = 0; bytes >> half != 0; half += 2)
     if ((bytes >> half & 3) != 0)
       value |= static_cast<std::uint32_t>(bus_->read_memory(local_.window + offset + half, bytes >> half & 3))
                << 8 * half;
@@ -150,7 +150,7 @@ std::uint32_t PciBridge::read_memory(std::uint32_t offset, unsigned bytes) {
 }
 
 void PciBridge::write_memory(std::uint32_t offset, std::uint32_t value, unsigned bytes) {
-  for (unsigned half = 0; half < 4; half += 2)
+  for (unsigned half = 0; bytes >> half != 0; half += 2)
     if ((bytes >> half & 3) != 0)
       bus_->write_memory(local_.window + offset + half, static_cast<std::uint16_t>(value >> 8 * half),
                          bytes >> half & 3);
