@@ -108,23 +108,28 @@ TEST_F(DesiredLimits, InTheFirstSegmentItDoesNotLeaveTheStart) {
   }
 }
 
-// motion:7.5/6: `>` to a program that goes forward anyway is no order for the stop at the limit: only one that comes
-// there leads a segment further.
+// motion:7.5/6: `>` to a program that goes forward is no order for the stop at the limit, be it that a `\` before it
+// has just begun to act: only one that comes there leads a segment further.
 TEST_F(DesiredLimits, AnOrderThatChangesNothingIsForgotten) {
-  for (const bool at_limit : {false, true}) {
-    SCOPED_TRACE(at_limit);
-    platform::power_up();
-    fit_x("$8001");
-    store({"F40 TA50 TS0", "X70"});
-    ASSERT_EQ(host("&1B1R"), "");
-    platform::servo_ticks(ticks_of(at_limit ? 2000 : 300));
-    ASSERT_EQ(host("&1>"), "");
-    platform::servo_ticks(ticks_of(2000));
-    EXPECT_EQ(std::stoul(host("??").substr(12, 6), nullptr, 16) & 2u, 2u);
-    const double before = at_limit ? 200 : 0;  // 40 counts/ms, 5 ms a segment
-    EXPECT_LE(at(1), 50000 + before);
-    EXPECT_GT(at(1), 50000 + before - 200 - 50);
-  }
+  for (const bool stops : {false, true})
+    for (const bool at_limit : {false, true}) {
+      SCOPED_TRACE(std::to_string(at_limit) + " " + std::to_string(stops));
+      platform::power_up();
+      fit_x("$8001");
+      store({"F40 TA50 TS0", "X70"});
+      ASSERT_EQ(host("&1B1R"), "");
+      platform::servo_ticks(ticks_of(at_limit ? 2000 : 300));
+      if (stops) {
+        ASSERT_EQ(host("&1\\"), "");
+        platform::servo_ticks(3);
+      }
+      ASSERT_EQ(host("&1>"), "");
+      platform::servo_ticks(ticks_of(2000));
+      EXPECT_EQ(std::stoul(host("??").substr(12, 6), nullptr, 16) & 2u, 2u);
+      const double before = at_limit ? 200 : 0;  // 40 counts/ms, 5 ms a segment
+      EXPECT_LE(at(1), 50000 + before);
+      EXPECT_GT(at(1), 50000 + before - 200 - 50);
+    }
 }
 
 // One whose limit is taken away goes by its axes again, beside another one that has its own.

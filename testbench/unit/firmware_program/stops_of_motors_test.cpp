@@ -362,7 +362,8 @@ TEST_F(StopsOfMotors, RotaryAxesGoTheShortestWay) {
 TEST_F(StopsOfMotors, TheTurnIsThatOfAMotorOfTheSystem) {
   fit({"100A", "100A", "100X", "100B", "100A", "100A"});
   ASSERT_EQ(host("&1#1->0#2->0"), "");
-  ASSERT_EQ(host("&2#1->100A#2->100A"), "");
+  ASSERT_EQ(host("&2#1->100A#2->100A PMATCH"), "") << "it has looked at its motors";
+  ticks(20);
   ASSERT_EQ(host("I127=0 I227=7200 I327=7200 I427=7200 I527=36000 I627=7200"), "");
   store({"TM100 TA20 TS0 A270"});
   run();
