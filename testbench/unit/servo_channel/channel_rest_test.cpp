@@ -89,5 +89,40 @@ TEST(ChannelPwmTimes, AreThoseOfThePinsHoweverLongTheStretch) {
   EXPECT_GT(ones, 5u) << "on for a tick";
 }
 
+// With inverted outputs both switches of a phase are on in its dead time: as often as the pins show them so, and not at
+// all without (systemc/core/motor_digest.h).
+TEST(ChannelPwmTimes, ShortsAreDeadTimesOfInvertedOutputs) {
+  constexpr Tick kTriangle = 2 * (2 * 100 + 3);
+  ServoIc ic{sc_core::sc_gen_unique_name("ic")};
+  Tick now = 0;
+  const auto write = [&](const regs::Register& word, std::uint32_t value) {
+    ic.advance(now = next_ref_edge(now));
+    ic.write(word.space == 'X', word.address, value);
+  };
+  ic.reset(0);
+  write(ic_words::kPwmControl, pwm_control(100, 1));  // a dead time of 16 ticks
+  write(ic_words::kClockControl, kOwnClocks);
+  write(words::kOutA, 20 << 8);
+  write(words::kOutB, 0x1000000 - (30 << 8));
+  write(words::kOutC, 50 << 8);
+  ic.advance(now += 2 * 13057);
+  for (const std::uint32_t word : {kInvertAb | kInvertC, 0u, kInvertC, kInvertAb}) {
+    write(words::kControl, word);
+    ic.advance(now += kTriangle);
+    const std::uint64_t before = ic.channels().pwm_times(0).shorts;
+    std::uint64_t shown = 0;
+    std::uint32_t last = ic.motor_outputs().w[0];
+    for (const Tick end = now + 5 * kTriangle; now < end;) {
+      ic.advance(++now);
+      const std::uint32_t pins = ic.motor_outputs().w[0];
+      for (unsigned phase = 0; phase < 3; ++phase)
+        shown += (pins >> 2 * phase & 3) == 3 && (last >> 2 * phase & 3) != 3 ? 1 : 0;
+      last = pins;
+    }
+    EXPECT_EQ(ic.channels().pwm_times(0).shorts - before, shown);
+    EXPECT_EQ(shown, 5 * 2 * ((word & kInvertAb ? 2u : 0u) + (word & kInvertC ? 1u : 0u))) << "two in each triangle";
+  }
+}
+
 }  // namespace
 }  // namespace brick
