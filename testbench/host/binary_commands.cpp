@@ -279,7 +279,7 @@ class Converter {
       end = place;
       found = &s;
     }
-    if (found != nullptr) at_ = end;
+    at_ = end;  // behind one that is unknown nothing is read
     return found;
   }
 
@@ -291,8 +291,7 @@ class Converter {
       mask = 0;
       do {
         const auto axis = (std::string(kAxes) + "R").find(peek());
-        if (peek() == '\0' || axis == std::string::npos || (is_frax && axis == kAxes.size()))
-          return BinaryResult::kSyntax;
+        if (axis == std::string::npos || (is_frax && axis == kAxes.size())) return BinaryResult::kSyntax;
         mask |= 1u << axis;
         ++at_;
       } while (accept(","));
