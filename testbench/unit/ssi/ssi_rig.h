@@ -2,7 +2,6 @@
 // of clk_ref. The model sleeps until its own next event: a wrong prediction shows up as a difference to the RTL.
 #pragma once
 
-
 #include <functional>
 #include <stdexcept>
 #include <string>
