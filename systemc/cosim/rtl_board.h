@@ -44,6 +44,7 @@ class RtlBoard : public Board {
     start.pa_rd_n = true;
     set_inputs(start);
     model_->eval();
+    model_.count_coverage();
     for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = model_->pins_o[i];
   }
   Tick now() const override { return now_; }

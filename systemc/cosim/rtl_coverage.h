@@ -13,23 +13,23 @@
 
 namespace brick {
 
-inline void write_coverage([[maybe_unused]] VerilatedContext& context) {
+inline void write_coverage([[maybe_unused]] VerilatedContext& context, [[maybe_unused]] const char* end = ".dat") {
 #ifdef BRICK_RTL_COVERAGE
   static int written = 0;
   const char* folder = std::getenv("BRICK_RTL_COVERAGE");
   if (folder == nullptr) return;
   const std::string name = std::to_string(getpid()) + "_" + std::to_string(++written);
   context.coveragep()->forcePerInstance(true);  // a bit that rose in one and fell in another did not do both
-  context.coveragep()->write((folder + ("/" + name) + ".dat").c_str());
+  context.coveragep()->write((folder + ("/" + name) + end).c_str());
 #endif
 }
 
-// After the first evaluation, in which a bit may differ from the random start value of what its counter compares it
-// with: a bit that changes from here on has changed. The lines of that evaluation go to a file of their own, for the
-// counter of an always_comb block counts then only.
+// In reset: up to there a bit may have changed from its random start value alone; one that changes from here on has
+// changed. The lines so far go to a file of their own, for the counter of an always_comb block counts then only; its
+// bits are not looked at.
 inline void start_coverage([[maybe_unused]] VerilatedContext& context) {
 #ifdef BRICK_RTL_COVERAGE
-  write_coverage(context);
+  write_coverage(context, "_start.dat");
   context.coveragep()->zero();
 #endif
 }

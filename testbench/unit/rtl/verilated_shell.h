@@ -23,8 +23,8 @@ class VerilatedShell : public VerilatedTop<Inputs, Outputs> {
     drive_(*top_, Inputs{});
     top_->rst_ni = true;
     top_->eval();
-    top_.count_coverage();
     reset();
+    top_.count_coverage();
   }
 
   void settle(const Inputs& in) override {

@@ -101,6 +101,13 @@ class Rows(Tree):
         points = coverage.rtl_points(sorted(pathlib.Path(self.root).glob("*.dat")))
         self.assertEqual(points, {("line", "rtl/host/dpram.sv", 7, " "): 4})
 
+    def test_bits_that_change_before_the_reset_do_not_count(self):
+        for name, times in (("1_1_start", 5), ("1_2", 1)):
+            where = f"\x01f\x02{coverage.ROOT}/rtl/host/dpram.sv\x01l\x027\x01page\x02"
+            self.write(f"{name}.dat", "".join(f"C '{where}{page}/dpram' {times}\n" for page in ("v_line", "v_toggle")))
+        points = coverage.rtl_points(sorted(pathlib.Path(self.root).glob("*.dat")))
+        self.assertEqual({key[0]: times for key, times in points.items()}, {"line": 5, "toggle": 1})
+
     def test_a_page_of_another_form_fails(self):
         self.write(PAGE, self.page().replace("| source of the RTL |", "|"))
         self.expect(self.run_tool("coverage.py", "--check"), 1, f"{PAGE}: no table of modules")
