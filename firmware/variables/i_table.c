@@ -47,6 +47,10 @@ static struct i_place in_servo_ic(uint32_t inside_all) {
   return place;
 }
 
+static inline struct i_place single(i_group_t group, uint32_t inside) {
+  return (struct i_place){.group = group, .offset = inside};
+}
+
 /* A group of `block` numbers to each motor, coordinate system or IC, of which the first has the number `first`. */
 static inline struct i_place in_blocks(i_group_t group, uint32_t inside, uint32_t block, uint32_t first) {
   const uint32_t instance = inside / block;
@@ -70,25 +74,25 @@ static bool is_of_geo_pmac(uint32_t number) {
 }
 
 static struct i_place of_geo_pmac(uint32_t number) {
-  if (number == I_ONLY_SEGMENTATION_TIME) return (struct i_place){I_GROUP_ONLY, ONLY_SEGMENTATION_TIME, 0, 0};
-  if (number == I_ONLY_LOOKAHEAD_LENGTH) return (struct i_place){I_GROUP_ONLY, ONLY_LOOKAHEAD_LENGTH, 0, 0};
-  return (struct i_place){I_GROUP_SSI, number - I_BASE_SSI, 0, 0};
+  if (number == I_ONLY_SEGMENTATION_TIME) return single(I_GROUP_ONLY, ONLY_SEGMENTATION_TIME);
+  if (number == I_ONLY_LOOKAHEAD_LENGTH) return single(I_GROUP_ONLY, ONLY_LOOKAHEAD_LENGTH);
+  return single(I_GROUP_SSI, number - I_BASE_SSI);
 }
 
 /* What is in no group is reserved, as a number of GATHER without a row is. */
 struct i_place i_table_place(uint32_t number) {
   if (geo_pmac && is_of_geo_pmac(number)) return of_geo_pmac(number);
-  if (number < I_MOTOR_BLOCK) return (struct i_place){I_GROUP_GLOBAL, number, 0, 0};
-  if (number >= I_BASE_TABLE) return (struct i_place){I_GROUP_TABLE, number - I_BASE_TABLE, 0, 0};
+  if (number < I_MOTOR_BLOCK) return single(I_GROUP_GLOBAL, number);
+  if (number >= I_BASE_TABLE) return single(I_GROUP_TABLE, number - I_BASE_TABLE);
   if (number >= I_SERVO_FIRST) return in_servo_ic(number - I_SERVO_FIRST);
   if (number >= I_BASE_MACRO) return in_macro_ic(number - I_BASE_MACRO);
   if (number < I_ESA_FIRST) return in_blocks(I_GROUP_MOTOR, number - I_MOTOR_BLOCK, I_MOTOR_BLOCK, 1);
   if (number < I_BASE_SYSTEM) return in_blocks(I_GROUP_ESA, number - I_ESA_FIRST, I_ESA_BLOCK, 0);
-  if (number < I_BASE_GATHER) return (struct i_place){I_GROUP_SYSTEM, number - I_BASE_SYSTEM, 0, 0};
-  if (number < I_CS_FIRST) return (struct i_place){I_GROUP_GATHER, number - I_BASE_GATHER, 0, 0};
+  if (number < I_BASE_GATHER) return single(I_GROUP_SYSTEM, number - I_BASE_SYSTEM);
+  if (number < I_CS_FIRST) return single(I_GROUP_GATHER, number - I_BASE_GATHER);
   if (number < I_CS_FIRST + COORDINATE_SYSTEMS * I_CS_BLOCK)
     return in_blocks(I_GROUP_CS, number - I_CS_FIRST, I_CS_BLOCK, 0);
-  return (struct i_place){I_GROUP_GATHER, RESERVED, 0, 0};
+  return single(I_GROUP_GATHER, RESERVED);
 }
 
 struct i_place i_table_next_of_ic(struct i_place place) {

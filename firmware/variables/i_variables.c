@@ -212,6 +212,7 @@ static void clear_all(void) {
   if (used) {
     __builtin_memset(value_of, 0, sizeof value_of);
     __builtin_memset(i_integers, 0, sizeof i_integers);
+    __builtin_memset(timer_start, 0, sizeof timer_start); /* the servo count begins anew too */
   }
   used = true;
   i_hardware_initialize();
@@ -294,9 +295,7 @@ static void write_ic(unsigned ic) {
   store(direction, i_clock_direction(ic, (uint32_t)i_integers[I19_CLOCK_SOURCE]));
   struct i_place place = i_table_place(first);
   for (uint32_t number = first; number < first + I_IC_BLOCK; ++number, place = i_table_next_of_ic(place)) {
-    const struct i_entry* entry = i_table_entry(place);
-    if (entry->field != I_FIELD_NONE && !i_of_absent_ic(place))
-      i_hardware_write(place, entry, (uint32_t)i_integers[number]);
+    if (!i_of_absent_ic(place)) i_hardware_write(place, i_table_entry(place), (uint32_t)i_integers[number]);
   }
 }
 

@@ -147,6 +147,8 @@ TEST_F(Listing, BracketsAreThoseThatAreNeeded) {
   EXPECT_EQ(listed("P1=(1*2)+(3&4)"), "P1=1*2+3&4");
   EXPECT_EQ(listed("P1=8/(4/2)"), "P1=8/(4/2)");
   EXPECT_EQ(listed("P1=-(P2+1)-(-(5))"), "P1=-(P2+1)--(5)");
+  EXPECT_EQ(listed("P1=P2*(-P3)/(-(P4+1))"), "P1=P2*-P3/-(P4+1)");
+  EXPECT_EQ(listed("P1=-(-(P2))"), "P1=--P2");
   EXPECT_EQ(listed("P(P2+1)=SIN((Q(3)))"), "P(P2+1)=SIN(Q(3))");
 }
 
@@ -158,6 +160,14 @@ TEST_F(Listing, ABlankStandsWhereWordsWouldRunTogether) {
 }
 
 TEST_F(Listing, TextIsKeptAsItWas) { EXPECT_EQ(listed("SENDP\"It; is  (5)\" CMD^x"), "SENDP\"It; is  (5)\"CMD^X"); }
+
+TEST_F(Listing, FormOfADisplayIsAWidthOfSixteenAtMostAndOneDigit) {
+  for (const char* text : {"DISP5,1.0,P1", "DISP5,16.9,P1"}) EXPECT_EQ(listed(text), text);
+  ASSERT_EQ(host("OPEN PROG 2"), "");
+  for (const char* text : {"DISP5,8.", "DISP5,8.,P1", "DISP5,8./,P1", "DISP5,8.:,P1", "DISP5,0.1,P1", "DISP5,17.1,P1",
+                           "DISP5,.1,P1", "DISP5,8.12,P1", "DISP5,8.1"})
+    EXPECT_EQ(host(text), "ERR003") << text;
+}
 
 TEST_F(Listing, BlanksInADisplayAreNothing) {
   for (const char* text : {"DISP5,8.2,P1", "DISP 5, 8.2, P1", "DISPLAY 5 ,\t8.2 , P1"})
