@@ -14,6 +14,8 @@ extern "C" {
 #include "firmware/kernel/tasks.h"
 #include "firmware/variables/i_table.h"
 #include "firmware/variables/i_variables.h"
+#include "firmware/variables/m_variables.h"
+#include "firmware/variables/pq_variables.h"
 #include "firmware/variables/ssi_inputs.h"
 }
 
@@ -194,17 +196,70 @@ TEST(IcVariables, DualPortedRamIsReportedWhereItIs) {
   EXPECT_EQ(c.line("I24 I4904"), "$0|$0");
 }
 
-// Each word has one variable: none of them changes another's.
-TEST(IcVariables, StrobeOfAMacroIcIsNotItsRingControl) {
-  Controller c(1u << kMacro);
-  c.line("I6840=$4030 I6841=$3F");
-  c.line("I6806=$123456");
-  EXPECT_EQ(*hal_x(0x7840E), 0x123456u);
-  EXPECT_EQ(*hal_x(0x7840F), 0x4030u);
-  EXPECT_EQ(*hal_y(0x7840F), 0x3Fu);
-  c.line("I6840=$4031");
-  EXPECT_EQ(*hal_x(0x7840F), 0x4031u);
-  EXPECT_EQ(*hal_y(0x7840F), 0x3Fu);
+// servo-ic:2.5: each variable of an IC has its bits, and changes no others.
+TEST(IcVariables, EachChangesItsOwnBitsAlone) {
+  struct Field {
+    unsigned number, lsb, width;
+    std::uint32_t address;
+    bool y;
+  };
+  const std::vector<Field> fields = {
+      {7000, 8, 15, 0x7801C, false}, {7001, 16, 4, 0x78004, false}, {7002, 20, 4, 0x78004, false},
+      {7003, 0, 12, 0x78004, false}, {7004, 0, 8, 0x7801C, false},  {7005, 0, 24, 0x7800C, false},
+      {7006, 0, 24, 0x78014, false}, {7020, 0, 4, 0x7800D, false},  {7021, 13, 1, 0x7800D, false},
+      {7022, 4, 4, 0x7800D, false},  {7023, 8, 2, 0x7800D, false},  {7024, 15, 1, 0x7800D, false},
+      {7025, 16, 2, 0x7800D, false}, {7026, 22, 2, 0x7800D, false}, {7027, 20, 2, 0x7800D, false},
+      {7028, 19, 1, 0x7800D, false}, {7029, 18, 1, 0x7800D, false}, {7040, 0, 4, 0x7801D, false},
+      {6800, 8, 15, 0x7840D, false}, {6801, 16, 4, 0x7840C, false}, {6802, 20, 4, 0x7840C, false},
+      {6803, 0, 12, 0x7840C, false}, {6804, 0, 8, 0x7840D, false},  {6806, 0, 24, 0x7840E, false},
+      {6840, 0, 24, 0x7840F, false}, {6841, 0, 24, 0x7840F, true},  {6820, 0, 4, 0x7841D, false},
+      {6827, 20, 2, 0x7841D, false}, {6828, 19, 1, 0x7841D, false},
+  };
+  const auto words = [](std::uint32_t base) {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t address = base; address < base + 0x20; ++address) {
+      found.push_back(std::uint32_t{*hal_x(address)});
+      found.push_back(std::uint32_t{*hal_y(address)});
+    }
+    return found;
+  };
+  Controller c(1u << kMacro | 1);
+  for (const Field& f : fields) {
+    const std::uint32_t base = f.number < 7000 ? 0x78400 : 0x78000, ones = (1u << f.width) - 1;
+    for (const std::uint32_t value : {0u, ones, ones & 0x555555u}) {
+      auto expected = words(base);
+      auto& word = expected[2 * (f.address - base) + (f.y ? 1 : 0)];
+      word = (word & ~(ones << f.lsb)) | value << f.lsb;
+      i_variable_write(f.number, value);
+      EXPECT_EQ(words(base), expected) << "I" << f.number << "=" << value;
+    }
+  }
+}
+
+// What was saved of an IC that is not there any more is not taken.
+TEST(IcVariables, OfAnIcThatWasTakenAwayAreZero) {
+  Controller c(0x3);
+  c.line("I7000=1000 I7100=1001 I7122=2 SAVE");
+  fake_hal_fit(0x1);
+  c.restart();
+  EXPECT_EQ(i_variable_read(7000), 1000);
+  for (unsigned n = 7100; n < 7150; ++n) EXPECT_EQ(i_variable_read(n), 0) << n;
+}
+
+// firmware:3.8: one value, for all systems.
+TEST(IcVariables, OnAGeoPmacI13AndI1020AreThoseOfEachSystem) {
+  Controller c(1);
+  fake_hal_set_strap(HAL_STRAP_PRODUCT, HAL_PRODUCT_GEO_PMAC);
+  c.restart();
+  i_variable_write(13, 7);
+  i_variable_write(6620, 300);
+  EXPECT_EQ(i_variable_read(13), 7);
+  EXPECT_EQ(i_variable_read(1020), 300);
+  for (unsigned n = 5100; n < 6800; ++n) {
+    if (n < 6700 && n % 100 == 13) { EXPECT_EQ(i_variable_read(n), 7) << n; }
+    if (n < 6700 && n % 100 == 20) { EXPECT_EQ(i_variable_read(n), 300) << n; }
+    if (n >= 6700) { EXPECT_EQ(i_variable_read(n), 0) << n; }
+  }
 }
 
 TEST(IcVariables, NumbersBehindTheLastReadZeroAndTakeNothing) {
@@ -217,6 +272,19 @@ TEST(IcVariables, NumbersBehindTheLastReadZeroAndTakeNothing) {
     EXPECT_EQ(i_variable_read(number), 0) << number;
   }
   EXPECT_EQ(i_variable_read(8191), 77);
+  // Each group of words begins where another ends. That of P0 would define an M-variable of its own value 5.
+  c.line("Q0=2 P8191=3 M8191->* M8191=4 WL$6000,$000001000005");
+  const std::string before = c.line("RHL$3FFF RHL$6000 RHL$9FFF RHL$A000");
+  for (const unsigned number : {8192u, 0xFFFFFFFFu}) {
+    m_variable_write(number, 9);
+    p_variable_write(number, 9);
+    q_variable_write(0, number, 9);
+    EXPECT_EQ(m_variable_read(number), 0);
+    EXPECT_EQ(p_variable_read(number), 0);
+    EXPECT_EQ(q_variable_read(0, number), 0);
+  }
+  EXPECT_EQ(c.line("Q0 P8191 M8191"), "2|3|4");
+  EXPECT_EQ(c.line("RHL$3FFF RHL$6000 RHL$9FFF RHL$A000"), before);
 }
 
 // firmware:9.3: Iyy10 to Iyy39 go with Iyy00, its neighbours and those of other motors stay.
