@@ -250,8 +250,8 @@ static error_t display(struct lexer* lx, const struct statement_row* row, struct
   const char* at = lx->at;
   for (width = 0; *at >= '0' && *at <= '9' && width < 100u; at++) width = width * 10u + (uint32_t)(*at - '0');
   if (*at == '.') {
-    decimals = (uint32_t)(uint8_t)at[1] - '0'; /* no digit at the end of the text: it is an error below */
-    at += 2;
+    decimals = (uint32_t)(uint8_t)at[1] - '0';
+    at += at[1] == '\0' ? 1 : 2;
   }
   lx->at = at;
   if (width < 1u || width > 16u || decimals > 9u || !lexer_accept(lx, ',')) return ERR_DATA;
