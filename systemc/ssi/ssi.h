@@ -20,9 +20,9 @@ class Ssi final : public sc_core::sc_module, public ModelBlock {
 
   explicit Ssi(const sc_core::sc_module_name& name) : sc_module(name) {}
 
-  bool geo = false;       // strap: which product
-  bool phase{}, servo{};  // nets
-  std::uint8_t data{};    // pins, bit n - 1 for channel n
+  bool geo = false;                 // strap: which product
+  bool phase = true, servo = true;  // nets
+  std::uint8_t data = 0xFF;         // pins, bit n - 1 for channel n
 
   std::uint8_t clk() const { return clk_; }
 
