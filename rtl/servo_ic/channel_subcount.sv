@@ -20,31 +20,32 @@ module channel_subcount (
   localparam logic [3:0] Steps = 4'd13;  // of the division: a 1 followed by twelve 0s
 
   logic        valid_q;
-  logic [3:0]  steps_q;             // division steps to go
-  logic [12:0] quotient_q;
-  logic [22:0] remainder_q, rest_q; // 4096 mod T1; 4096 * added periods mod T1
+  logic [3:0]  steps_q;                  // division steps to go
+  logic [12:0] quotient_q, remainder_q;  // 4096 / T1, 4096 mod T1
+  logic [22:0] rest_q;                   // 4096 * added periods mod T1
   logic [11:0] e_q;
-  logic [4:0]  lag_q;               // SCLK periods not yet added
+  logic [4:0]  lag_q;                    // SCLK periods not yet added
 
   logic        divides, fits, add, two, over;
   logic [1:0]  carry;
   logic [22:0] rest;
-  logic [23:0] shifted;
-  logic [24:0] less, sum, once, twice;  // bit 24 of a difference is its borrow
+  logic [12:0] shifted;
+  logic [23:0] less, sum;
+  logic [24:0] once, twice;  // the highest bit of a difference is its borrow
   logic [13:0] e_next;
 
   // One division step.
   assign divides = steps_q != 4'd0;
-  assign shifted = {remainder_q, steps_q == Steps};
-  assign less    = {1'b0, shifted} - {2'b00, t1_i};
-  assign fits    = ~less[24];
+  assign shifted = {remainder_q[11:0], steps_q == Steps};
+  assign less    = {11'd0, shifted} - {1'b0, t1_i};
+  assign fits    = ~less[23];
 
   // One or two SCLK periods more.
   assign add   = valid_q & ~divides & (lag_q != 5'd0);
   assign two   = lag_q > 5'd1;
-  assign sum   = {2'b00, rest_q} + (two ? {1'b0, remainder_q, 1'b0} : {2'b00, remainder_q});
-  assign once  = sum - {2'b00, t1_i};
-  assign twice = sum - {1'b0, t1_i, 1'b0};
+  assign sum   = {1'b0, rest_q} + (two ? {10'd0, remainder_q, 1'b0} : {11'd0, remainder_q});
+  assign once  = {1'b0, sum} - {2'b00, t1_i};
+  assign twice = {1'b0, sum} - {1'b0, t1_i, 1'b0};
   always_comb begin
     rest  = sum[22:0];
     carry = 2'd0;
@@ -64,7 +65,7 @@ module channel_subcount (
     if (count_i || !enable_i) begin
       valid_q     <= enable_i & count_i & ~reversed_i;
       steps_q     <= Steps;
-      remainder_q <= 23'd0;
+      remainder_q <= 13'd0;
       rest_q      <= 23'd0;
       e_q         <= 12'd0;
       lag_q       <= 5'd0;
@@ -72,7 +73,7 @@ module channel_subcount (
       if (divides) begin
         steps_q     <= steps_q - 4'd1;
         quotient_q  <= {quotient_q[11:0], fits};
-        remainder_q <= fits ? less[22:0] : shifted[22:0];
+        remainder_q <= fits ? less[12:0] : shifted;
       end
       if (add) begin
         rest_q <= rest;
@@ -85,7 +86,7 @@ module channel_subcount (
   assign fraction_o   = down_i ? ~e_q : e_q;
   assign fraction_d_o = count_i ? {12{down_new_i}} : fraction_o;
   logic unused;  // a difference that is not negative is below T1
-  assign unused = &{1'b0, less[23], once[23], twice[23]};
+  assign unused = &{1'b0, less[22:13], once[23], twice[23]};
 
 endmodule : channel_subcount
 

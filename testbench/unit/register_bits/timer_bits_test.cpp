@@ -8,6 +8,7 @@
 
 #include "testbench/unit/register_bits/bits_rig.h"
 #include "testbench/unit/register_bits/rtl_servo_channel.h"
+#include "testbench/unit/servo_channel/channel_words.h"
 
 namespace brick {
 namespace {
@@ -148,9 +149,20 @@ TEST_P(LongWords, TimersShowEveryBitAndStayAtTheirLimit) {
   }
   latch(kLimit + 100);
   expect(false, 1, kLimit);
+  // 4096 T2 / T1 of T1 at its limit passes 2048 where T2 is half of it; of a count down it is taken from 4095.
+  c.write(true, 5, 3 | kFine);
   turn(kLimit + 200, false);
-  latch(50);
+  for (const int past : {-10, 10}) {
+    latch(kLimit / 2 + past + delay);
+    EXPECT_EQ(fine2::kServo.get(c.read(false, 1)), 4095u - (past < 0 ? 2047 : 2048));
+  }
+  c.write(true, 5, 3);
+  latch(kLimit / 2 + 100);
   expect(false, 0, kLimit);
+  turn(kLimit / 2 + 200, false);
+  turn(100, false);
+  latch(50);
+  expect(false, 0, 100);
   check_readings();
   check(false, 0, 0xFFFFFF);
   check(false, 1, 0x7FFFFF, 1 << 23);
