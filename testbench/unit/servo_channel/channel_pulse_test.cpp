@@ -182,9 +182,9 @@ TEST_F(ChannelPulseTest, AmplifierEnableDoesNotGateThePwm) {
 
 TEST_F(ChannelPulseTest, WidthOfZeroIsOneAndPulsesThatMeetJoin) {
   control(1, kPfm);
-  for (const std::uint32_t width : {0u, 1u, 2u}) {
+  for (const std::uint32_t width : {0u, 1u, 2u, 255u}) {
     rig_.write(ic_words::kPwmControl, pwm_control(kMaxCount, width));
-    out_c(0x100000);  // every 16 PFM_CLK
+    out_c(width > 15 ? 0x8000 : 0x100000);  // every 512 PFM_CLK, every 16
     pulse_rises();
     const Tick rise = pulse_rises();
     EXPECT_EQ(edge_of([&] { return !pulse(); }) - rise, (width == 0 ? 1 : width) * kPfmClk);

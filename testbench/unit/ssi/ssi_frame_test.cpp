@@ -214,7 +214,7 @@ TYPED_TEST(SsiFrames, BrickDividesAHundredMegahertz) {
   }
 }
 
-// The first low half at high powers of two, and of the largest divisor that a simulation can wait for.
+// The first low half at each power of two that is at least 25 cycles.
 TYPED_TEST(SsiFrames, BrickDividesByEveryPowerOfTwo) {
   BRICK_COVERS("SSI-1");
   for (unsigned power = 5; power < 16; ++power) {
@@ -227,6 +227,55 @@ TYPED_TEST(SsiFrames, BrickDividesByEveryPowerOfTwo) {
     const Tick seen = this->trigger(), rise = seen + (Tick{half} * 18432 + 15624) / 15625;
     this->rig.run(rise - this->rig.now());
     EXPECT_EQ(this->edges, (std::vector<Tick>{seen, rise})) << power;
+  }
+}
+
+// Of the longest periods, 2^23 and 255 * 2^15 cycles as delay, the beginning; the proof of ssi_group has them whole.
+TYPED_TEST(SsiFrames, BrickWaitsLongByTheLargestDivisors) {
+  BRICK_COVERS("SSI-1");
+  for (const unsigned divisor : {255u, 254u}) {
+    this->rig.encoders = nullptr;
+    this->rig.reset(false);
+    this->wire(1, {}, 0);
+    this->rig.write(true, 0x2F, divisor << 16 | 15 << 12 | 0x312);
+    this->rig.write(true, brick_word(1), 0x1400 | 12);
+    this->trigger();
+    this->rig.run(100'000);
+    EXPECT_TRUE(this->edges.empty()) << divisor;
+  }
+  this->rig.reset(false);
+}
+
+// Of triggers in a frame a channel that is enabled later counts fewer; the first of an enabled one starts its group.
+// The next frame reads 32 bits of one level. Each channel has data and count of its own (servo-ic:11.3,
+// servo-ic:11.9/6).
+TYPED_TEST(SsiFrames, EachChannelReadsEveryBitAtBothLevelsAndCountsWhatItRefuses) {
+  BRICK_COVERS("SSI-1");
+  constexpr unsigned kEach = 40, kAll = 600;
+  for (const bool level : {true, false}) {
+    this->rig.reset(false);
+    this->rig.encoders = [level](Tick, unsigned) { return level ? 0xFFu : 0u; };
+    for (const unsigned channel : {1u, 5u}) this->rig.write(true, brick_group(channel), 0x637302);  // 12,800 cycles
+    for (unsigned trigger = 0; trigger < kAll; ++trigger) {
+      if (trigger % kEach == 0 && trigger / kEach < 8)
+        this->rig.write(true, brick_word(1 + trigger / kEach), 0x1400 | 32);
+      this->rig.nets(true, false);
+      this->rig.run(3);
+      this->rig.nets(true, true);
+      this->rig.run(3);
+    }
+    for (unsigned channel = 1; channel <= 8; ++channel) {
+      const unsigned taken = channel == 1 || channel == 5 ? 1 : 0;
+      EXPECT_EQ(this->rig.read(true, brick_word(channel) + 1), (kAll - (channel - 1) * kEach - taken) % 256) << channel;
+    }
+    for (const unsigned channel : {1u, 5u}) this->rig.write(true, brick_group(channel), kFastSsi);
+    this->rig.run(16'000 + 34 * 30 + kRest);  // a slow half, the rest of the frame
+    this->trigger();
+    this->rig.run(34 * 30 + kRest);
+    for (unsigned channel = 1; channel <= 8; ++channel) {
+      EXPECT_EQ(this->rig.read(false, brick_word(channel)), level ? 0xFFFFFFu : 0u) << channel;
+      EXPECT_EQ(this->rig.read(false, brick_word(channel) + 1), level ? 0xFFu : 0u) << channel;
+    }
   }
 }
 
