@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "systemc/cosim/engines.h"
+#include "systemc/host/dpram_memory.h"
 #include "testbench/unit/cosim/board_traffic.h"
 #include "testbench/unit/cosim/distorted_board.h"
 #include "testbench/unit/covers.h"
@@ -104,6 +105,7 @@ void play(std::uint32_t ics, int seed, BoardTraffic::Options options, Tick end, 
   while (!life.lacks(traffic, least).empty() && end < longest) ASSERT_NO_THROW(traffic.run(*board, end += step));
   EXPECT_EQ(board->now(), end);
   EXPECT_THAT(life.lacks(traffic, least), ::testing::IsEmpty());
+  for (unsigned word = 0; word < DpramMemory::kWords; ++word) ASSERT_NO_THROW(board->dpram_word(word));
 }
 
 class BoardLockstep : public ::testing::TestWithParam<std::tuple<std::uint32_t, int>> {
