@@ -69,10 +69,14 @@ module servo_channels (
     if (rd_i && x_i && addr_i[2:0] == brick_regs_pkg::ServoChannelFlagPositionAddr[2:0]) read_capture = sel;
   end
 
-  logic [95:0] rdata, counter;
-  logic [47:0] fraction;
-  logic [3:0]  count, down, still, fine;
+  logic [95:0] rdata;
+  logic        count1, down1, still1, fine1;  // of channel 1, which serves the others as a source, too
+  logic [23:0] counter1;
+  logic [11:0] fraction1;
   for (genvar n = 0; n < 4; n++) begin : gen_channel
+    logic        count, down, still, fine;
+    logic [23:0] counter;
+    logic [11:0] fraction;
     servo_channel u_channel (
       .clk_pwm_i, .clk_ref_i, .rst_ni,
       .x_i, .addr_i(addr_i[2:0]), .sel_i(sel[n]), .we_i(we_i & sel[n]), .wdata_i,
@@ -80,18 +84,20 @@ module servo_channels (
       .trip_i, .trip_d_i, .cnt_i, .turn_i, .deadtime_i,
       .sclk_ce_i(sclk_ce), .pfm_ce_i(pfm_ce), .phase_fall_i(phase_fall), .servo_fall_i(servo_fall),
       .dac_load_i(dac_load), .dac_shift_i(dac_shift), .adc_sample_i(adc_sample), .adc_bit_i(adc_bit),
-      .count_o(count[n]), .down_o(down[n]), .still_o(still[n]), .fine_o(fine[n]),
-      .counter_o(counter[24*n +: 24]), .fraction_o(fraction[12*n +: 12]),
-      .count1_i(count[0]), .down1_i(down[0]), .still1_i(still[0]), .fine1_i(fine[0]),
-      .counter1_i(counter[23:0]), .fraction1_i(fraction[11:0]),
+      .count_o(count), .down_o(down), .still_o(still), .fine_o(fine), .counter_o(counter), .fraction_o(fraction),
+      .count1_i(count1), .down1_i(down1), .still1_i(still1), .fine1_i(fine1),
+      .counter1_i(counter1), .fraction1_i(fraction1),
       .pins_i(pins[12*n +: 12]), .adc_a_i(adc_a_i[n]), .adc_b_i(adc_b_i[n]),
       .pwm_o(pwm_o[6*n +: 6]), .pulse_o(pulse_o[n]), .dir_o(dir_o[n]), .dac_a_o(dac_a_o[n]), .dac_b_o(dac_b_o[n]),
       .aena_o(aena_o[n]), .equ_o(equ_o[n])
     );
+    if (n == 0) begin : gen_source
+      assign {count1, down1, still1, fine1, counter1, fraction1} = {count, down, still, fine, counter, fraction};
+    end else begin : gen_unused
+      logic unused;
+      assign unused = &{1'b0, count, down, still, fine, counter, fraction};
+    end
   end
-
-  logic unused;  // only channel 1 serves as a source for the others
-  assign unused = &{1'b0, count[3:1], down[3:1], still[3:1], fine[3:1], counter[95:24], fraction[47:12]};
 
   assign rdata_o = rdata[23:0] | rdata[47:24] | rdata[71:48] | rdata[95:72];
 
