@@ -15,12 +15,11 @@ module watchdog (
   output logic      relay_o      // 1 energised
 );
 
-  localparam logic [15:0] Timeout = 16'd960;  // 25 ms
+  localparam logic [9:0] Timeout = 10'd960;  // 25 ms
 
-  logic [9:0]  prescale_q;
-  logic [15:0] strobe_left_d, strobe_left_q, servo_left_d, servo_left_q;
-  logic        good, servo1_q, servo2_q, trip_d, trip_q, relay_q;
-  logic        count, servo_edge;
+  logic [9:0] prescale_q, strobe_left_d, strobe_left_q, servo_left_d, servo_left_q;
+  logic       good, servo1_q, servo2_q, trip_d, trip_q, relay_q;
+  logic       count, servo_edge;
   assign count      = &prescale_q;
   assign servo_edge = servo1_q != servo2_q;
 
@@ -31,9 +30,9 @@ module watchdog (
     servo_left_d  = servo_left_q;
     trip_d        = trip_q | ~good;
     if (count && !trip_q) begin
-      strobe_left_d = strobe_left_q - 16'd1;
-      servo_left_d  = servo_left_q - 16'd1;
-      if ((strobe_left_q == 16'd1 && !strobe_i) || (servo_left_q == 16'd1 && !servo_edge)) trip_d = 1'b1;
+      strobe_left_d = strobe_left_q - 10'd1;
+      servo_left_d  = servo_left_q - 10'd1;
+      if ((strobe_left_q == 10'd1 && !strobe_i) || (servo_left_q == 10'd1 && !servo_edge)) trip_d = 1'b1;
     end
     if (strobe_i) strobe_left_d = Timeout;
     if (servo_edge) servo_left_d = Timeout;

@@ -36,22 +36,24 @@ module channel_compare #(
   // Passing, with fractions: from `last` to `pos` the position crossed a compare if it was not beyond it before and is
   // now. Arriving: if it was before it and is not now, the same one unit later.
   localparam logic [35:0] ArrivesLater = EquOnLeave ? 36'd0 : 36'd1;
-  logic [35:0] last_q, pos, moved, way, a_ahead, b_ahead;
+  logic [35:0] last_q, pos, a_ahead, b_ahead;
+  logic [13:0] moved;  // at most a count and, of the fraction, less than another
+  logic [12:0] way;
   logic [23:0] at;  // where a count has to find a compare
   logic [1:0]  source_q;
   logic        known_q, jump, looks, back, hit_a, hit_b, down;
   // No motion: a source that is held, and a position that is elsewhere as it is another's or turns to or from 1/T.
   assign jump = still_i || {other_i, source_fine_i} != source_q;
   assign pos     = {counter_i, fraction_i};
-  assign moved   = pos - last_q;
-  assign back    = moved[35];
-  assign way     = back ? last_q - pos : moved;
+  assign moved   = pos[13:0] - last_q[13:0];
+  assign back    = moved[13];
+  assign way     = back ? -moved[12:0] : moved[12:0];
   assign a_ahead = back ? last_q - {a_q, af_q} : {a_q, af_q} - last_q;
   assign b_ahead = back ? last_q - {b_q, bf_q} : {b_q, bf_q} - last_q;
   assign at      = EquOnLeave ? counter_i : (down_i ? counter_i - 24'd1 : counter_i + 24'd1);
   assign looks   = ce_i & known_q & ~jump;
-  assign hit_a   = fine_i ? looks & (a_ahead - ArrivesLater < way) : count_i & (at == a_q);
-  assign hit_b   = fine_i ? looks & (b_ahead - ArrivesLater < way) : count_i & (at == b_q);
+  assign hit_a   = fine_i ? looks & (a_ahead - ArrivesLater < {23'd0, way}) : count_i & (at == a_q);
+  assign hit_b   = fine_i ? looks & (b_ahead - ArrivesLater < {23'd0, way}) : count_i & (at == b_q);
   assign down    = fine_i ? back : down_i;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
