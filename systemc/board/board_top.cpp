@@ -109,12 +109,6 @@ void BoardTop::reset_all(Tick t) {
   next_own_ = kNever;
 }
 
-BoardTop::Parts BoardTop::due(Tick t) const {
-  Parts which = 0;
-  for (unsigned i = 0; i < (seldom_ <= t ? kBlocks : kBusy); ++i) which |= (next_[i] <= t ? 1u : 0u) << i;
-  return which;
-}
-
 void BoardTop::schedule(Parts which) {
   each_block(which, [this](Part part, const auto& block) { next_[part] = block.next_event(); });
   const auto first = [this](unsigned from, unsigned to,

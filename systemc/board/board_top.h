@@ -172,7 +172,11 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
   IcAccess take_strobe(Tick t);
   void take_access(const IcAccess& ic, Tick t, Parts& changed);
   void select();
-  Parts due(Tick t) const;  // blocks whose next event has come
+  Parts due(Tick t) const {  // blocks whose next event has come
+    Parts which = 0;
+    for (unsigned i = 0; i < (seldom_ <= t ? kBlocks : kBusy); ++i) which |= (next_[i] <= t ? 1u : 0u) << i;
+    return which;
+  }
   void schedule(Parts which);
   Tick next_event() const;
   Tick next_clock_event() const { return std::min(next_[kClockSelect], gate_ics_.next_clock_event()); }

@@ -34,6 +34,11 @@ class LazyIcs : public ::testing::TestWithParam<std::uint64_t> {
       }
       const ConverterWords lines = digest.dac_lines(ic);
       all.insert(all.end(), lines.begin(), lines.end());
+      const MotorDigest::AdcStream stream = digest.adc_stream(ic);
+      const Tick end = std::max(stream.end, rig.now());  // of one that is over nobody asks
+      for (const std::int64_t part : {stream.clocks, std::int64_t{stream.strobe}, std::int64_t{stream.first}, end})
+        all.push_back(static_cast<std::uint32_t>(part));
+      for (const bool b : {false, true}) all.push_back(digest.adc_lines(ic, b));
     }
     return all;
   }
@@ -44,7 +49,7 @@ class LazyIcs : public ::testing::TestWithParam<std::uint64_t> {
       if (i < 18)
         ASSERT_EQ(a[i], b[i]) << "IC " << i / 6 << " word " << i % 6 << " of the pins before tick " << lazy.now();
       else if (i >= 18 + 3 * 64)
-        ASSERT_EQ(a[i], b[i]) << "IC " << (i - 18 - 3 * 64) / 24 << " word " << (i - 18 - 3 * 64) % 24
+        ASSERT_EQ(a[i], b[i]) << "IC " << (i - 18 - 3 * 64) / 30 << " word " << (i - 18 - 3 * 64) % 30
                               << " of the digest at tick " << lazy.now();
       else
         ASSERT_EQ(a[i], b[i]) << "IC " << (i - 18) / 64 << " register " << (i - 18) % 64 << " before tick "
@@ -102,6 +107,11 @@ TEST_P(LazyIcs, AreWhereEagerOnesAre) {
     motor.adc_a = static_cast<std::uint8_t>(pick(16));
     motor.adc_b = static_cast<std::uint8_t>(pick(16));
     both([&](BoardRig& rig) { rig.board().set_motor_inputs(ic, motor); });
+    if (pick(3) == 0) {  // in place of the pins
+      ConverterWords words;
+      for (std::uint32_t& word : words) word = pick(1u << 24);
+      both([&](BoardRig& rig) { rig.board().motor_digest()->send_adc(ic, words); });
+    }
     write(true, kWatchdogStrobe, 0);
     run(200'000 + static_cast<Tick>(pick(2'000'000)));
     compare();

@@ -111,8 +111,8 @@ TYPED_TEST(ServoIcOn, PhaseAndServoPeriodsAreExactToTheTick) {
       {6527, 0, 3},                                                 // factory: 9.0346 kHz, 2.2587 kHz
       {1473, 3, 1},                                                 // 10.0004 kHz, 5.0002 kHz
       {2948, 0, 0},                                                 // servo as fast as phase
-      {100, 2, 2},   {7, 4, 15}, {6, 15, 1}, {1, 0, 7}, {0, 1, 3},  // the shortest triangle
-      {32767, 0, 0},                                                // the longest
+      {32767, 0, 0},                                                // the longest triangle
+      {100, 2, 2},   {7, 4, 15}, {6, 15, 1}, {1, 0, 7}, {0, 1, 3},  // the shortest
   };
   for (const auto& [max_count, phase_div, servo_div] : settings) {
     SCOPED_TRACE(::testing::Message() << "I7m00=" << max_count << " I7m01=" << phase_div << " I7m02=" << servo_div);
