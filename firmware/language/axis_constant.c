@@ -1,7 +1,8 @@
 /* The time to BREQ (host-bus:5.7, T_FALL) is made of these statements: integers only, no division, and one look at each
  * character. A constant has up to nine digits, four of them behind the point, and is divided to 33 bits. The way by
  * floating point rounds twice, to 53 bits and then to 33, and comes to the same: n / 10^4 is a tie of 33 bits or at
- * least 2^-48 of its size away from one. */
+ * least 2^-48 of its size away from one. Nor does it round up to a power of two: it is one, or at least 2^-30 of its
+ * size away from it. */
 #include "firmware/language/axis_constant.h"
 
 enum { LONGEST = 9, DECIMALS = 4, PART_BITS = 16, WORD_BITS = 32 };
@@ -43,9 +44,7 @@ static __attribute__((noinline)) uint32_t fraction(uint32_t digits, uint32_t dec
     high = high << zeros | low >> (WORD_BITS - zeros);
     low <<= zeros;
   }
-  if ((low >> (WORD_BITS - 1)) == 0u || ++high != 0u) return high;
-  ++*exponent;
-  return 1u << (WORD_BITS - 1);
+  return high + (low >> (WORD_BITS - 1));
 }
 
 static inline const char* skip_blanks(const char* at) {

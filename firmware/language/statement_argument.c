@@ -284,8 +284,6 @@ error_t statement_argument_compile(struct lexer* lx, const struct statement_row*
   switch (row->argument) {
     case ARGUMENT_NONE:
       return plain(row, out);
-    case ARGUMENT_AXIS:
-      return statement_axis_compile(lx, code_number(row), out);
     case ARGUMENT_AXES:
     case ARGUMENT_FRAX:
       return axes(lx, row, out);

@@ -9,8 +9,6 @@ enum { TIME_BASE_BITS = 8 };
 
 static const uint32_t CAPTURE = SERVO_CHANNEL_STATUS_CAPTURED_MASK;
 
-void convert_software_1t(const struct conversion_entry* entry) { conversion_software_1t(entry); }
-
 /* The IC's fraction counts upwards in both directions. */
 void convert_hardware_1t(const struct conversion_entry* entry) {
   const uint32_t counts = (*entry->source[ENCODER_POSITION] >> 1) << CONVERSION_FRACTION;

@@ -22,7 +22,6 @@ static inline void conversion_software_1t(const struct conversion_entry* entry) 
   *entry->result = conversion_with_time(entry, *entry->source[ENCODER_POSITION], CONVERSION_FRACTION) & HAL_WORD_MASK;
 }
 
-void convert_software_1t(const struct conversion_entry* entry); /* $0 */
 void convert_sub_count(const struct conversion_entry* entry);   /* $8 */
 void convert_counter(const struct conversion_entry* entry);     /* $C */
 void convert_hardware_1t(const struct conversion_entry* entry); /* $C, bit 19 */

@@ -21,7 +21,7 @@ struct conversion_state {
 };
 
 struct conversion_entry {
-  void (*convert)(const struct conversion_entry* entry);
+  void (*convert)(const struct conversion_entry* entry); /* 0: conversion_software_1t */
   const volatile uint32_t* source[CONVERSION_SOURCES];
   volatile uint32_t *first_result, *result; /* X of its first and of its last line */
   struct conversion_state* state;

@@ -96,14 +96,22 @@ static void make_sources(struct conversion_entry* e) {
 
 static void make_entry(struct conversion_entry* e, uint32_t line, uint32_t lines) {
   typedef void (*convert_t)(const struct conversion_entry* entry);
-  static const convert_t CONVERT[16] = {convert_software_1t, convert_analog,
-                                        convert_parallel,    convert_parallel_limited,
-                                        convert_time_base,   convert_analog_integrated,
-                                        convert_parallel,    convert_parallel_limited,
-                                        convert_sub_count,   convert_frozen,
-                                        convert_armed,       convert_armed,
-                                        convert_counter,     convert_exponential,
-                                        convert_sum,         convert_nothing};
+  static const convert_t CONVERT[16] = {0, /* conversion_software_1t */
+                                        convert_analog,
+                                        convert_parallel,
+                                        convert_parallel_limited,
+                                        convert_time_base,
+                                        convert_analog_integrated,
+                                        convert_parallel,
+                                        convert_parallel_limited,
+                                        convert_sub_count,
+                                        convert_frozen,
+                                        convert_armed,
+                                        convert_armed,
+                                        convert_counter,
+                                        convert_exponential,
+                                        convert_sum,
+                                        convert_nothing};
   e->line = (uint8_t)line;
   e->setup = line_word(line);
   e->method = (uint8_t)(e->setup >> METHOD_SHIFT);
@@ -182,7 +190,7 @@ void conversion_table_servo(void) {
   const struct table* table = present;
   const struct conversion_entry *e = table->entries, *end = e + table->count;
   for (; e != end; ++e) {
-    if (e->convert == convert_software_1t) /* nearly all are: no call */
+    if (e->convert == 0) /* nearly all are: no call */
       conversion_software_1t(e);
     else
       e->convert(e);

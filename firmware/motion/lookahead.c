@@ -116,8 +116,6 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   return true;
 }
 
-uint32_t lookahead_left(uint32_t cs) { return look_end(&looks[cs]) - looks[cs].front; }
-
 bool lookahead_is_full(uint32_t cs) {
   const struct look* l = &looks[cs];
   if (l->backward) return true; /* what is behind is needed */

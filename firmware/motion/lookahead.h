@@ -34,7 +34,6 @@ struct lookahead_piece {
 /* A sequence of segments of `period` ms begins: whether it is looked ahead. */
 bool lookahead_begin(uint32_t cs, uint32_t period);
 bool lookahead_is_full(uint32_t cs);
-uint32_t lookahead_left(uint32_t cs); /* segments that are not handed over */
 /* The next control point, the last ones of the motors by number; move and line at it. */
 void lookahead_add(uint32_t cs, const int64_t control[][SPLINE_POINTS], uint32_t number, const struct path_line* line);
 void lookahead_close(uint32_t cs); /* the points so far are all */

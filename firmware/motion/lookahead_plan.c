@@ -218,25 +218,20 @@ static bool stop(struct look* l, struct lookahead_piece* piece) {
 }
 
 /* From rest to the next knot and to rest again, in two parts. */
-static bool single(struct look* l, struct lookahead_piece* piece) {
-  struct next_part p;
-  if (!find_part(l, &p)) {
-    stand(l);
-    return false;
-  }
+static bool single(struct look* l, const struct next_part* p, struct lookahead_piece* piece) {
   if (l->rate != 0) { /* the second part */
-    hand(l, p.segment, p.first, p.last, 0, piece);
+    hand(l, p->segment, p->first, p->last, 0, piece);
     stand(l);
     return true;
   }
-  const uint32_t middle = (p.first + p.last) / 2u;
-  const int32_t cap = lookahead_at(&l->buffer, p.segment)->cap;
-  load_next(l, &p, middle);
+  const uint32_t middle = (p->first + p->last) / 2u;
+  const int32_t cap = lookahead_at(&l->buffer, p->segment)->cap;
+  load_next(l, p, middle);
   int32_t most = limits_most(far_end(l), 0, cap);
-  load_part(l, p.segment, l->backward ? p.last : middle, l->backward ? middle : p.last);
+  load_part(l, p->segment, l->backward ? p->last : middle, l->backward ? middle : p->last);
   const int32_t down = limits_most(l->backward ? LIMITS_SECOND : LIMITS_FIRST, 0, cap);
   if (down < most) most = down;
-  hand(l, p.segment, p.first, middle, most > 0 ? most : 1, piece);
+  hand(l, p->segment, p->first, middle, most > 0 ? most : 1, piece);
   return true;
 }
 
@@ -277,7 +272,7 @@ static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
     if (l->backward) stand(l);
     return false;
   }
-  if (l->single) return single(l, piece);
+  if (l->single) return single(l, &p, piece);
   if (is_at_limit(l)) {
     stand(l);
     return false;
@@ -293,7 +288,7 @@ static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
     to = limited ? limited_rate(l, &p) : rising_rate(l);
     if (to == 0 && l->rate == 0) {
       if (limited && !l->backward) return false; /* for want of what comes behind it */
-      return single(l, piece);
+      return single(l, &p, piece);
     }
   }
   hand(l, p.segment, p.first, p.last, to, piece);

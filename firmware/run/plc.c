@@ -77,12 +77,10 @@ static bool step(uint32_t number) {
           plc_disable(1u << number);
           return false;
       }
-    case EXECUTED_LATER:
-      return false;
     case EXECUTED_END:
       to_the_top(number);
       return false;
-    default:
+    default: /* never for later: while programs move, none is at its turn */
       plc_disable(1u << number);
       return false;
   }
