@@ -134,6 +134,18 @@ POINTS = {("line", "rtl/board/watchdog.sv", 2, "3 block"): 3,
           ("toggle", "rtl/board/watchdog.sv", 4, "15 a_q[1]"): 1}
 
 
+class Cleanup(Tree):
+    """What gcov says of code that only exceptions reach: no block that is not theirs, and none that ran."""
+
+    def test_what_the_compiler_has_put_there_does_not_count(self):
+        path = self.root / "a.cpp"
+        self.write("a.cpp", "class A {\n  }\n} catch (const B& b) { b.what(); }\n  return a;\n")
+        for number, cleanup in ((1, True), (2, True), (3, False), (4, False), (5, False)):
+            for count, unexecuted in ((0, False), (0, True), (1, False), (1, True)):
+                line = {"line_number": number, "count": count, "unexecuted_block": unexecuted}
+                self.assertEqual(coverage.is_cleanup(path, line), cleanup and count == 0 and not unexecuted, line)
+
+
 class Exclusions(Tree):
     """Two lines and two signals of a module, one of each never reached."""
 
