@@ -65,6 +65,7 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
 
  private:
   friend class BoardWaker;  // testbench/unit/cosim/board_asleep_test.cpp
+  friend class BoardProbe;  // testbench/unit/cosim/board_parts_test.cpp
 
   ConverterWords dac_lines(unsigned ic) override {
     const ServoChannels* channels = gate_ics_.channels(ic, now_);

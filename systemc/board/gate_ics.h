@@ -74,6 +74,7 @@ class GateIcs {
 
  private:
   friend class BoardWaker;
+  friend class BoardProbe;
 
   // Channels of servo IC 0 and 1 whose EQU interrupts.
   unsigned interrupting(unsigned ic) const { return ic < 2 ? interrupting_ >> 4 * ic & 0xF : 0; }

@@ -80,6 +80,46 @@ TEST(ClockFollowerJumps, AThousandPeriodsAreAFewEdges) {
   }
 }
 
+// PHASE is low for `low` ticks and high for the rest of 200, SERVO turns with its falls.
+ClockHistory history_of_widths(std::size_t edges, Tick low) {
+  ClockHistory history;
+  Tick tick = 100;
+  bool phase = true, servo = true;
+  while (history.size() < edges) {
+    phase = !phase;
+    if (!phase) servo = !servo;
+    history.push({tick, phase, servo});
+    tick += phase ? 200 - low : low;
+  }
+  return history;
+}
+
+// The first edge of the period that is looked at has had 64 ticks of calm before it. From there on three periods must
+// be to come: one passes to see that the state repeats, all but the last that are whole by then are left out.
+TEST(ClockFollowerJumps, LeaveOutAllPeriodsButTheTwoThatAreNeeded) {
+  constexpr std::size_t kLength = 4;
+  constexpr Tick kPeriod = 400;
+  for (const Tick low : {40, 63, 64, 100, 136, 137, 160}) {
+    const ClockHistory whole = history_of_widths(100, low);
+    std::size_t first = kLength;
+    while (!whole.repeats_from(first) || whole[first].tick - whole[first - 1].tick < 64) ++first;
+    for (std::size_t edges = first; edges < first + 7 * kLength; ++edges) {
+      const ClockHistory history = history_of_widths(edges, low);
+      const Tick last = history[edges - 1].tick;
+      for (Tick end = last - kPeriod - 20; end <= last + 20; end += end > last - 3 && end < last + 3 ? 1 : 13) {
+        SCOPED_TRACE(::testing::Message() << low << ", " << edges << " edges, up to tick " << end);
+        Diary ic;
+        ic.catch_up(history, end);
+        const Tick seen = whole[first + kLength].tick - 1;  // it repeats
+        Tick periods = edges > first + 3 * kLength && end > seen ? (end - seen) / kPeriod - 1 : 0;
+        periods = std::max<Tick>(0, std::min<Tick>(periods, static_cast<Tick>((edges - first) / kLength) - 2));
+        EXPECT_EQ(ic.jumped, periods * kPeriod);
+        EXPECT_EQ(ic.now, end);
+      }
+    }
+  }
+}
+
 // One whose state does not repeat, or that is asked each period, executes all edges, each with its levels.
 TEST(ClockFollowerJumps, WhatDoesNotRepeatIsExecuted) {
   constexpr int kEdges = 400;

@@ -19,10 +19,21 @@ constexpr unsigned kClock = 0x04, kPwm = 0x1C;  // words of an IC
 constexpr std::uint32_t kFollows = 3 << 12;
 constexpr std::uint32_t kOwn = 1 << 20;  // all hardware clocks at 39.3216 MHz, SERVO at half the speed of PHASE
 
+// Counts the edges of the clocks that it executes.
+class CountingIc : public ServoIc {
+ public:
+  using ServoIc::ServoIc;
+  unsigned edges = 0;
+  void set_pins(bool phase, bool servo) override {
+    ++edges;
+    ServoIc::set_pins(phase, servo);
+  }
+};
+
 class Pair {
  public:
   Pair() {
-    for (ServoIc* ic : {&lazy, &eager}) {
+    for (CountingIc* ic : {&lazy, &eager}) {
       ic->reset(0);
       ic->set_pins(true, true);
       ic->set_motor_inputs(pins);
@@ -70,20 +81,20 @@ class Pair {
   void write(bool x, unsigned offset, std::uint32_t value) {
     run_to(next_ref_edge(now));
     lazy.catch_up(history_, now);
-    for (ServoIc* ic : {&lazy, &eager}) ic->write(x, offset, value);
+    for (CountingIc* ic : {&lazy, &eager}) ic->write(x, offset, value);
   }
   void set(const MotorInputs& in) {
     pins = in;
     lazy.catch_up(history_, now);
-    for (ServoIc* ic : {&lazy, &eager}) ic->set_motor_inputs(in);
+    for (CountingIc* ic : {&lazy, &eager}) ic->set_motor_inputs(in);
   }
   void trip(bool on) {
     lazy.catch_up(history_, now);
-    for (ServoIc* ic : {&lazy, &eager}) ic->set_trip(on);
+    for (CountingIc* ic : {&lazy, &eager}) ic->set_trip(on);
   }
   void send(const ConverterWords& words) {
     lazy.catch_up(history_, now);
-    for (ServoIc* ic : {&lazy, &eager}) ic->send_adc(words);
+    for (CountingIc* ic : {&lazy, &eager}) ic->send_adc(words);
   }
   // The first difference, in words; "" if there is none.
   std::string compare() {
@@ -106,7 +117,7 @@ class Pair {
     return "";
   }
 
-  ServoIc lazy{sc_core::sc_gen_unique_name("lazy")}, eager{sc_core::sc_gen_unique_name("eager")};
+  CountingIc lazy{sc_core::sc_gen_unique_name("lazy")}, eager{sc_core::sc_gen_unique_name("eager")};
   MotorInputs pins;
 
  private:
@@ -174,6 +185,39 @@ TEST_P(ClockFollowerDeadTime, IsNotStartedByAJumpBesideATurnaround) {
 }
 INSTANTIATE_TEST_SUITE_P(Places, ClockFollowerDeadTime,
                          ::testing::Values(0, 10, 40, 100, 137, 150, 190, 230, 300, 350, 380));
+
+// What repeats with the clocks is left out: of a thousand periods an IC executes a few, whatever its outputs do, as
+// long as the streams of the converters are over before the next ones begin: 24 bits of 3 * 2^n ticks, PHASE each 1403
+// here.
+TEST(ClockFollower, LeavesOutMostOfALongRegularStretch) {
+  constexpr Tick kPeriod = 2 * 2 * 1403;  // of SERVO, with its four edges and the triangle's two ways
+  for (const bool follows : {false, true})
+    for (unsigned bits = 0; bits <= 4; ++bits) {
+      SCOPED_TRACE(::testing::Message() << "follows " << follows << ", bit clocks " << bits);
+      Pair pair;
+      if (follows) pair.clocks(1403, true);
+      pair.write(true, kClock, (follows ? kFollows : 0) | 1 << 16 | 1 << 20 | bits << 9 | (4 - bits) << 6 | 2 << 3);
+      pair.write(true, kPwm, 700 << 8 | 20);
+      for (unsigned channel = 0; channel < kChannels; ++channel) {
+        pair.write(true, 8 * channel + kChannelControl, channel == 0 ? 0x400003 : channel == 1 ? 0x800008 : 3);
+        for (unsigned out = 0; out < 3; ++out)
+          pair.write(false, 8 * channel + kOutA + out, (channel * 12345 + out * 54321) & 0xFFFFFF);
+      }
+      pair.run(10 * kPeriod);
+      ConverterWords words{};
+      words.fill(0x5A5A5A);
+      for (int round = 0; round < 3; ++round) {
+        if (round == 1) pair.send(words);
+        if (round == 2) pair.trip(true);
+        pair.run(20 * kPeriod + 123 * round);
+        ASSERT_EQ(pair.compare(), "") << "round " << round;
+        const unsigned before = pair.lazy.edges;
+        pair.run(200 * kPeriod);
+        ASSERT_EQ(pair.compare(), "") << "round " << round;
+        EXPECT_LE(pair.lazy.edges - before, 24u) << "round " << round;
+      }
+    }
+}
 
 std::uint64_t seeds() {
   const char* text = std::getenv("BRICK_FOLLOWER_SEEDS");

@@ -1,0 +1,239 @@
+// An event of the model's board concerns the parts that have changed: what they show goes to the pins and to the inputs
+// of other blocks that hang on them, and nobody else is touched (systemc/board/board_top.h).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "systemc/board/board_top.h"
+
+namespace brick {
+
+// The inside of a board at rest. What is told wrongly stays wrong until somebody wires it anew.
+class BoardProbe {
+ public:
+  struct Part {
+    std::string name;
+    unsigned bit;
+    BoardOutputs pins;  // that it shows
+  };
+  static std::vector<Part> parts() {
+    using B = BoardTop;
+    const BoardOutputs port_a = select_pins(pin::kPaData, pin::kPaDataOe, pin::kPaTaN, pin::kBusyHost, pin::kBusyCpu);
+    const BoardOutputs pic = select_pins(pin::kPicIst, pin::kPicSig, pin::kPicMsk, pin::kPicElr);
+    return {
+        {"bus_sync", B::kBusSync, port_a},
+        {"isa_slave", B::kIsaSlave, select_pins(pin::kIsaSd, pin::kIsaSdOe, pin::kIsaIochrdy, pin::kIsaMemcs16N)},
+        {"host_port", B::kHostPort, {}},  // while it does nothing
+        {"dpram", B::kDpram, port_a},
+        {"clock_select", B::kClockSelect,
+         select_pins(pin::kPhase, pin::kServo, pin::kPhaseSource, pin::kSourceConflict)},
+        {"watchdog", B::kWatchdog,
+         select_pins(pin::kCtrl0, pin::kCtrl1, pin::kWdo, pin::kWdTripped, pin::kWdRelay, pin::kWdLed)},
+        {"interrupt_controller", B::kInterruptController, pic},
+        {"pic_8259", B::kPic8259, pic},
+        {"host_interrupt", B::kHostInterrupt, select_pins(pin::kIsaIrq)},
+        {"host_signals", B::kHostSignals,
+         select_pins(pin::kBreq, pin::kIpos, pin::kEror, pin::kF1er, pin::kCtrl0, pin::kCtrl1)},
+        {"panel_port", B::kPanelPort, select_pins(pin::kBrldN, pin::kErldN, pin::kF1ldN, pin::kIpldN)},
+        {"ssi", B::kSsi, select_pins(pin::kSsiClk)},
+        {"IC clocks", B::kIcClocks, {}},
+        {"pins of Port A", B::kPortAPins, port_a},
+        {"pins of ISA", B::kIsaPins, {}},
+        {"connector", B::kConnectorPins, {}},
+        {"straps", B::kStraps, pic},
+    };
+  }
+
+  struct Wire {
+    std::string name;
+    std::uint32_t sources;       // bits of the parts
+    std::function<void()> turn;  // makes it wrong, or right again
+    std::function<unsigned()> value;
+  };
+  std::vector<Wire> wires() {
+    using B = BoardTop;
+    std::vector<Wire> list;
+    const auto add = [&list](std::uint32_t sources, auto&... fields) {
+      const auto one = [&](auto& field) {
+        using Field = std::remove_reference_t<decltype(field)>;
+        list.push_back({"", sources, [&field] { field = static_cast<Field>(field ^ 1); },
+                        [&field] { return static_cast<unsigned>(field); }});
+      };
+      (one(fields), ...);
+    };
+    const auto of = [](auto... part) { return ((1u << part) | ...); };
+    B& b = *board_;
+    auto& isa = b.isa_slave_.in;
+    auto &hp = b.host_port_.in, &hp_of_cpu = hp;
+    auto& ram = b.dpram_.in;
+    auto& own = b.interrupt_controller_.in;
+    auto& old = b.pic_8259_.in;
+    auto& select = b.clock_select_;
+    const std::uint32_t access = of(B::kBusSync, B::kStraps), ics = of(B::kIcClocks, B::kConnectorPins, B::kStraps),
+                        lines = of(B::kHostSignals, B::kWatchdog, B::kConnectorPins, B::kStraps),
+                        panel = of(B::kHostSignals, B::kConnectorPins, B::kStraps),
+                        serial = of(B::kClockSelect, B::kConnectorPins, B::kStraps);
+    add(access, b.host_signals_.in.wr, b.host_signals_.in.ctrl_wr, b.host_signals_.in.wdata, b.watchdog_.strobe);
+    add(access, hp_of_cpu.dsp_sel, hp.dsp_we, hp.dsp_rd, hp.dsp_addr, hp.dsp_wdata);
+    add(of(B::kStraps), b.gate_ics_.macro_gates_, ram.small, own.addr, own.wdata, old.addr, old.wdata);
+    add(ics, select.in.phase, select.in.servo, select.in.ext, select.phase_level, select.servo_level);
+    add(ics, select.ext_phase, select.ext_servo);
+    add(of(B::kClockSelect), b.gate_ics_.phase_, b.gate_ics_.servo_, b.watchdog_.servo);
+    add(of(B::kConnectorPins), b.watchdog_.pwr_good);
+    add(of(B::kWatchdog), b.gate_ics_.trip_, b.host_signals_.in.trip);
+    add(of(B::kIsaSlave), hp.hp_sel, hp.hp_rd, hp.hp_rd_done, hp.hp_wr, hp.hp_addr, hp.hp_wdata, hp.hp_reset);
+    add(of(B::kIsaSlave), ram.mem_sel, ram.mem_wr);
+    add(0, ram.mem_rd, ram.mem_addr, ram.mem_be, ram.mem_wdata);  // of no cycle of the RAM
+    add(of(B::kIsaSlave, B::kStraps), own.wr, own.reset, old.rd, old.wr);
+    add(lines | of(B::kIsaSlave, B::kHostPort), own.line, old.line);
+    add(lines, b.lines_);
+    add(of(B::kInterruptController, B::kPic8259, B::kStraps), b.host_interrupt_.in.request, b.host_interrupt_.in.served,
+        isa.pic_rdata);
+    add(of(B::kIsaPins), isa.isa_sa, isa.isa_sd, isa.io_base, isa.window);
+    add(of(B::kHostPort), isa.hp_rdata);
+    add(of(B::kDpram), isa.mem_rdata, isa.mem_busy);
+    add(panel, b.panel_port_.jpan, b.panel_port_.fitted, b.panel_port_.breq, b.panel_port_.eror);
+    add(panel, b.panel_port_.f1er, b.panel_port_.ipos);
+    add(inputs_.ssi_kind != 0 ? serial : 0, b.ssi_.geo, b.ssi_.phase, b.ssi_.servo, b.ssi_.data);
+    for (std::size_t i = 0; i < list.size(); ++i) list[i].name = "wire " + std::to_string(i);
+    return list;
+  }
+
+  explicit BoardProbe(std::uint8_t ssi_kind) : board_(std::make_unique<BoardTop>(name(), 0x40003)) {
+    inputs_.fitted = 0x40003;  // two servo ICs and MACRO IC 0
+    inputs_.ssi_kind = ssi_kind;
+    set();
+    board_->run_until(8);
+    inputs_.rst_n = true;
+    set();
+    board_->run_until(200);
+    rest();
+  }
+  void set() { board_->set_inputs(inputs_); }
+  BoardInputs& inputs() { return inputs_; }
+  BoardTop& board() { return *board_; }
+
+  BoardOutputs shown() const { return board_->outputs_; }
+  // The pins that follow when `changed` has changed and all that was shown was wrong.
+  BoardOutputs pins(std::uint32_t changed) {
+    const BoardOutputs right = shown();
+    board_->outputs_ = inverse(right);
+    const BoardOutputs after = board_->pins(changed);
+    board_->outputs_ = right;
+    BoardOutputs followed;
+    for (unsigned i = 0; i < kBoardOutputWords; ++i) followed.w[i] = ~(after.w[i] ^ right.w[i]);
+    return followed;
+  }
+  void connect(std::uint32_t changed, bool strobe) {
+    board_->touched_ = 0;
+    board_->strobe_wired_ = strobe;
+    board_->connect(changed);
+  }
+  void rest() {  // all edges are over
+    board_->each_block(BoardTop::kEveryBlock, [this](unsigned, auto& block) { block.advance(board_->now_); });
+  }
+  bool straps_differ() const { return board_->straps_differ_; }
+  bool& panel_fitted() { return board_->panel_port_.fitted; }
+  std::uint32_t& isa_address() { return board_->isa_slave_.in.isa_sa; }
+  std::uint16_t& cpu_data() { return board_->dpram_.in.cpu_wdata; }
+  static constexpr std::uint32_t kEverything = BoardTop::kEverything, kBusSync = 1u << BoardTop::kBusSync,
+                                 kHostPort = 1u << BoardTop::kHostPort;
+
+ private:
+  static sc_core::sc_module_name name() { return sc_core::sc_gen_unique_name("probed"); }
+  static BoardOutputs inverse(BoardOutputs o) {
+    for (std::uint32_t& word : o.w) word = ~word;
+    return o;
+  }
+  std::unique_ptr<BoardTop> board_;
+  BoardInputs inputs_;
+};
+
+namespace {
+
+BoardOutputs all_pins() {
+  BoardOutputs all;
+  for (const PinField& field : pin::kAll) all.set(field, ~0u);
+  return all;
+}
+
+std::string names(const BoardOutputs& select) {
+  std::string list;
+  for (const PinField& field : pin::kAll)
+    if (select.get(field) != 0) list += " " + std::string(field.name);
+  return list;
+}
+
+TEST(BoardParts, MoveThePinsThatTheyShowAndNoOthers) {
+  BoardProbe probe(2);
+  for (const BoardProbe::Part& part : BoardProbe::parts())
+    EXPECT_EQ(names(probe.pins(1u << part.bit)), names(part.pins)) << part.name;
+  EXPECT_EQ(names(probe.pins(0)), "");
+  EXPECT_EQ(names(probe.pins(BoardProbe::kEverything)), names(all_pins()));
+  // The host port alone has pins that follow an edge at which it did something.
+  HostPort& port = probe.board().host_port();
+  port.in.hp_sel = port.in.hp_wr = true;
+  port.advance(next_ref_edge(probe.board().now()));
+  EXPECT_EQ(names(probe.pins(BoardProbe::kHostPort)),
+            names(select_pins(pin::kIrqHost, pin::kHreq, pin::kTxde, pin::kRxdf)));
+  EXPECT_EQ(names(probe.pins(0)), "");
+}
+
+TEST(BoardParts, AreWiredToWhatHangsOnThemAndNothingElse) {
+  for (const std::uint8_t ssi : {0, 2}) {
+    BoardProbe probe(ssi);
+    for (const BoardProbe::Wire& wire : probe.wires()) {
+      const unsigned right = wire.value();
+      const auto wired = [&](std::uint32_t changed, bool strobe) {
+        wire.turn();
+        probe.connect(changed, strobe);
+        const bool is = wire.value() == right;
+        if (!is) wire.turn();
+        return is;
+      };
+      for (const BoardProbe::Part& part : BoardProbe::parts())
+        ASSERT_EQ(wired(1u << part.bit, true), (wire.sources >> part.bit & 1) != 0)
+            << wire.name << ", " << part.name << ", ssi " << unsigned{ssi};
+      ASSERT_FALSE(wired(0, false)) << wire.name;
+      ASSERT_FALSE(wired(BoardProbe::kBusSync, false)) << wire.name << ", without a strobe";
+    }
+  }
+}
+
+// Inputs that stay as they are are not looked at, of those that move their own group.
+TEST(BoardParts, GroupsOfInputsThatMoveAreWired) {
+  BoardProbe probe(0);
+  bool &panel = probe.panel_fitted(), panel_is = panel;
+  std::uint32_t &isa = probe.isa_address(), isa_is = isa;
+  std::uint16_t& cpu = probe.cpu_data();
+  BoardInputs& in = probe.inputs();
+  const auto wired = [&](const std::function<void()>& move) {
+    move();
+    panel = !panel_is;
+    isa = isa_is ^ 1;
+    cpu = static_cast<std::uint16_t>(in.pa_wdata ^ 1);
+    probe.rest();
+    probe.set();
+    const std::string groups = std::string(panel == panel_is ? "connector " : "") + (isa == isa_is ? "ISA " : "") +
+                               (cpu == (in.pa_wdata & 0xFFFF) ? "Port A " : "") +
+                               (probe.straps_differ() ? "straps" : "");
+    panel = panel_is;
+    isa = isa_is;
+    return groups;
+  };
+  EXPECT_EQ(wired([] {}), "");
+  EXPECT_EQ(wired([&] { in.pa_wdata = 5; }), "Port A ");
+  EXPECT_EQ(wired([&] { in.isa_sd = 5; }), "ISA ");
+  EXPECT_EQ(wired([&] { in.window = 5; }), "ISA ");
+  EXPECT_EQ(wired([&] { in.mi1 = true; }), "connector ");
+  EXPECT_EQ(wired([&] { in.dpram_small = true; }), "straps");
+  EXPECT_EQ(wired([&] { in.mi2 = true; }), "connector straps") << "until an edge of clk_ref takes them";
+  EXPECT_EQ(wired([&] { in.dpram_small = false; }), "") << "as they were";
+  EXPECT_EQ(wired([&] { in.rst_n = false; }), "Port A ");
+}
+
+}  // namespace
+}  // namespace brick
