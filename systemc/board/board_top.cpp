@@ -40,11 +40,10 @@ void BoardTop::set_inputs(const BoardInputs& inputs) {
     reset_end_ = kNever;
   else if (reset_end_ == kNever)
     reset_end_ = next_ref_edge(now_) + kResetRelease;
-  if (changed == 0) return;
   touched_ = 0;
   if ((changed & parts(kPortAPins)) != 0) drive_port_a();
-  if ((changed & ~parts(kPortAPins)) != 0) connect(changed & ~parts(kPortAPins));
-  if (touched_ != 0) schedule(touched_);
+  connect(changed & ~parts(kPortAPins));
+  schedule(touched_);
 }
 
 void BoardTop::set_port_a(const BoardInputs& inputs) {

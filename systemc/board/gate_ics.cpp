@@ -117,7 +117,6 @@ void GateIcs::set_trip(bool trip, Tick now) {
 }
 
 void GateIcs::set_interrupting(std::uint32_t equ, Tick now) {
-  if (equ == interrupting_) return;
   interrupting_ = equ;
   equ_ = 0;
   for_each_bit(3 & built_, [&](unsigned ic) {
@@ -127,7 +126,6 @@ void GateIcs::set_interrupting(std::uint32_t equ, Tick now) {
 }
 
 void GateIcs::set_macro_gates(std::uint32_t gates, Tick now) {
-  if (gates == macro_gates_) return;
   for_each_bit((gates ^ macro_gates_) & built_ >> kServoIcs, [&](unsigned i) {
     catch_up(kServoIcs + i, now);
     macro_ic_[i]->set_gate((gates >> i & 1) != 0);

@@ -1,6 +1,7 @@
 // Which block an address selects in the model, and no other with it: the places of host-bus:2.1 and servo-ic:1.2.
 #include <gtest/gtest.h>
 
+#include <tuple>
 #include <vector>
 
 #include "systemc/board/address_decode.h"
@@ -42,6 +43,20 @@ TEST(AddressDecodeModel, LatchesAreXWordsOfTheirPage) {
   for (const std::uint32_t address : {0x70010u, 0x70011u, 0x70012u}) EXPECT_EQ(selected(latch(address, false)), "-");
   EXPECT_EQ(selected(latch(0x70013, true)), "-");
   EXPECT_EQ(selected({0x70011, 1, true, false}), "") << "with another select";
+}
+
+TEST(AddressDecodeModel, RegionsEndWithTheirLastAddresses) {
+  for (const auto& [first, last, select, kind] :
+       {std::tuple{0x70000u, 0x700FFu, 0, kNoSsi}, std::tuple{0x78000u, 0x7BFFFu, 2, kNoSsi},
+        std::tuple{0x0FF00u, 0x0FFFFu, 2, kGeoWithout}})
+    for (const std::uint8_t aa : {0, 1, 2, 3, 4, 8}) {
+      const auto any = [&, of_aa = aa, of_kind = kind](std::uint32_t address) {
+        return !selected({address, of_aa, false, false}, false, of_kind).empty();
+      };
+      const bool region = select == 0 ? aa == 0 : (aa & 2) != 0;
+      for (const std::uint32_t address : {first, last}) EXPECT_EQ(any(address), region) << std::hex << address;
+      for (const std::uint32_t address : {first - 1, last + 1}) EXPECT_FALSE(any(address)) << std::hex << address;
+    }
 }
 
 TEST(AddressDecodeModel, EachIcHasItsPlace) {

@@ -139,6 +139,16 @@ class BoardProbe {
   bool& panel_fitted() { return board_->panel_port_.fitted; }
   std::uint32_t& isa_address() { return board_->isa_slave_.in.isa_sa; }
   std::uint16_t& cpu_data() { return board_->dpram_.in.cpu_wdata; }
+  // The buses' blocks that the pins of Port A have touched, and whether a pin follows them without a clock.
+  std::string touched(const BoardInputs& inputs) {
+    board_->touched_ = 0;
+    board_->set_port_a(inputs);
+    const std::uint32_t all = board_->touched_;
+    return std::string((all >> BoardTop::kBusSync & 1) != 0 ? "bus_sync " : "") +
+           ((all >> BoardTop::kDpram & 1) != 0 ? "dpram " : "") +
+           ((all & ~(1u << BoardTop::kBusSync | 1u << BoardTop::kDpram)) != 0 ? "others " : "") +
+           (board_->next_own_ != kNever ? "at once" : "");
+  }
   static constexpr std::uint32_t kEverything = BoardTop::kEverything, kBusSync = 1u << BoardTop::kBusSync,
                                  kHostPort = 1u << BoardTop::kHostPort;
 
@@ -233,6 +243,48 @@ TEST(BoardParts, GroupsOfInputsThatMoveAreWired) {
   EXPECT_EQ(wired([&] { in.mi2 = true; }), "connector straps") << "until an edge of clk_ref takes them";
   EXPECT_EQ(wired([&] { in.dpram_small = false; }), "") << "as they were";
   EXPECT_EQ(wired([&] { in.rst_n = false; }), "Port A ");
+}
+
+// Addresses and data are of no interest until a strobe falls, but to the RAM while it is selected.
+TEST(BoardParts, PortATouchesTheBlocksThatTakeNotice) {
+  BoardProbe probe(0);
+  BoardInputs& in = probe.inputs();
+  const auto run = [&](Tick ticks) { probe.board().run_until(probe.board().now() + ticks); };
+  EXPECT_EQ(probe.touched(in), "");
+  in.pa_addr = 0x70010;
+  in.pa_wdata = 1;
+  in.pa_x = true;
+  EXPECT_EQ(probe.touched(in), "");
+  in.pa_wr_n = false;
+  EXPECT_EQ(probe.touched(in), "bus_sync dpram ");
+  run(1);
+  in.pa_wdata = 2;
+  EXPECT_EQ(probe.touched(in), "bus_sync ") << "a write is on its way";
+  run(20);
+  in.pa_wdata = 3;
+  EXPECT_EQ(probe.touched(in), "") << "it is over";
+  in.pa_wr_n = true;
+  EXPECT_EQ(probe.touched(in), "bus_sync dpram ");
+  in.pa_aa = 4;
+  EXPECT_EQ(probe.touched(in), "dpram ");
+  in.pa_addr = 0x60000;
+  EXPECT_EQ(probe.touched(in), "dpram ");
+  in.pa_aa = 0;
+  EXPECT_EQ(probe.touched(in), "dpram ") << "it was selected";
+  EXPECT_EQ(probe.touched(in), "");
+  in.pa_addr = 0x70010;
+  in.pa_rd_n = false;
+  EXPECT_EQ(probe.touched(in), "bus_sync dpram ") << "D is driven from the sample on";
+  run(20);
+  EXPECT_EQ(probe.shown().get(pin::kPaDataOe), 1u);
+  EXPECT_EQ(probe.touched(in), "");
+  in.pa_rd_n = true;
+  EXPECT_EQ(probe.touched(in), "bus_sync dpram at once") << "D is let go";
+  run(1);
+  EXPECT_EQ(probe.touched(in), "");
+  in.pa_aa = 4;
+  in.pa_rd_n = false;
+  EXPECT_EQ(probe.touched(in), "bus_sync dpram at once") << "the RAM makes it wait";
 }
 
 }  // namespace

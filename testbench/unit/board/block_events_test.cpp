@@ -1,0 +1,191 @@
+// When blocks of the model's board have something to do (systemc/core/model_block.h): no event where nothing is to
+// come, or it would cost time, and each at the tick at which it comes.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "systemc/board/bus_sync.h"
+#include "systemc/board/clock_select.h"
+#include "systemc/board/gate_ics.h"
+#include "testbench/unit/board/words.h"
+
+namespace brick {
+namespace {
+
+// A strobe is taken at the edge of clk_ref that finds it new behind three flip-flops, and made at the next one. A write
+// shows its strobe from the tick before to that edge; of a read nobody but the on-chip page sees the beginning.
+TEST(BlockEvents, OfTheBusAreTheAccesses) {
+  for (const bool write : {false, true})
+    for (const bool internal : {false, true})
+      for (Tick phase = 0; phase < 2 * kTicksPerRef; ++phase) {
+        SCOPED_TRACE(::testing::Message() << "write " << write << ", internal " << internal << ", tick " << phase);
+        BusSync bus(sc_core::sc_gen_unique_name("bus"));
+        BusStrobes strobes;
+        PortAPins pins;
+        bus.reset(0);
+        bus.set_pins(pins, strobes);
+        EXPECT_EQ(bus.next_event(), kNever);
+        bus.advance(phase);
+        pins.pa_aa = 2;
+        pins.pa_int = internal;
+        bus.set_pins(pins, strobes);
+        EXPECT_EQ(bus.next_event(), kNever) << "no strobe";
+        EXPECT_FALSE(bus.under_way());
+        EXPECT_EQ(bus.internal_pending(), internal);
+        (write ? pins.pa_wr_n : pins.pa_rd_n) = false;
+        strobes.set_pins(pins, true);
+        bus.set_pins(pins, strobes);
+        EXPECT_EQ(bus.write_pending(), write);
+        EXPECT_TRUE(bus.internal_pending());
+        const Tick taken = next_ref_edge(phase + 3), made = taken + kTicksPerRef;
+        std::vector<Tick> events;
+        while (bus.next_event() != kNever && events.size() < 9) {
+          events.push_back(bus.next_event());
+          const bool shown = events.back() == made - 1;
+          bus.advance(events.back());
+          EXPECT_EQ(write ? bus.we() : bus.rd(), shown);
+          EXPECT_FALSE(write ? bus.rd() : bus.we());
+        }
+        EXPECT_EQ(events, (write || internal ? std::vector<Tick>{made - 1, made} : std::vector<Tick>{made}));
+        EXPECT_FALSE(bus.under_way()) << "whatever the level";
+        EXPECT_FALSE(bus.write_pending());
+        EXPECT_EQ(bus.internal_pending(), internal);
+        if (write) { EXPECT_EQ(bus.where().aa, 2u); }
+        bus.advance(made + 50);
+        (write ? pins.pa_wr_n : pins.pa_rd_n) = true;
+        strobes.set_pins(pins, true);
+        bus.set_pins(pins, strobes);
+        EXPECT_EQ(bus.next_event(), kNever) << "the end of the strobe";
+      }
+}
+
+// Levels and pins from outside come with the next tick, drivers with the next edge of clk_ref, a conflict when it has
+// lasted three ticks; at rest there is nothing to come.
+TEST(BlockEvents, OfTheClockSelectionAreItsMoves) {
+  for (const bool servo : {false, true}) {
+    SCOPED_TRACE(servo ? "SERVO" : "PHASE");
+    ClockSelect select(sc_core::sc_gen_unique_name("select"));
+    std::uint32_t& level = servo ? select.servo_level : select.phase_level;
+    bool& outside = servo ? select.ext_servo : select.ext_phase;
+    select.reset(0);
+    EXPECT_EQ(select.next_event(), kNever);
+    outside = false;
+    EXPECT_EQ(select.next_event(), kNever) << "nobody follows it";
+    select.advance(100);
+    outside = true;
+    (servo ? select.in.servo : select.in.phase) = 0x6;
+    EXPECT_EQ(select.next_event(), 102) << "clk_ref takes the drivers";
+    select.advance(102);
+    EXPECT_EQ(select.next_event(), kNever);
+    Tick now = 200;
+    select.advance(now);
+    level = ~0x6u;
+    EXPECT_EQ(select.next_event(), now + 1) << "the levels move";
+    select.advance(++now);
+    EXPECT_EQ(select.next_event(), now + 1) << "the net follows";
+    select.advance(++now);
+    EXPECT_EQ(select.next_event(), kNever);
+    level = ~0x4u;
+    EXPECT_EQ(select.next_event(), now + 1);
+    select.advance(++now);
+    EXPECT_EQ(select.next_event(), now + 1) << "the net follows IC 1";
+    select.advance(++now);
+    EXPECT_FALSE(select.conflict());
+    EXPECT_EQ(select.next_event(), now + 2) << "the third tick of the fight";
+    select.advance(++now);
+    EXPECT_EQ(select.next_event(), now + 1);
+    select.advance(++now);
+    EXPECT_TRUE(select.conflict());
+    EXPECT_EQ(select.next_event(), kNever);
+    select.advance(now += 50);
+    level = ~0u;
+    EXPECT_EQ(select.next_event(), now + 1);
+    select.advance(++now);
+    EXPECT_EQ(select.next_event(), kNever) << "IC 1 is where it was";
+    select.in = {0, 0, true};
+    EXPECT_EQ(select.next_event(), next_ref_edge(now));
+    select.advance(now = 600);
+    EXPECT_EQ(select.next_event(), kNever);
+    outside = false;
+    for (int n = 0; n < 3; ++n) {  // two flip-flops and the net
+      EXPECT_EQ(select.next_event(), now + 1) << n;
+      select.advance(++now);
+    }
+    EXPECT_EQ(select.next_event(), kNever);
+    EXPECT_FALSE(servo ? select.servo() : select.phase());
+    EXPECT_TRUE(servo ? select.phase() : select.servo());
+  }
+}
+
+// An IC is looked at when an output of it is due, or something about it moves, and the others are left alone.
+TEST(BlockEvents, OfAnIcConcernNoOther) {
+  constexpr std::uint32_t kClockWord = 4, kPwmWord = 0x1C;
+  GateIcs ics(0x40007);
+  ics.reset(0);
+  ics.take_changes();
+  EXPECT_EQ(ics.next_event(), kNever);
+  MotorOutputs pulse, count;
+  pulse.set(motor_pin::kPfmPulse, 0, 1);
+  count.set(motor_pin::kCount, 0, ~0u);
+  ics.watch(0, pulse, 300);
+  EXPECT_EQ(ics.take_changes(), 1u);
+  ics.watch(1, pulse, 300);
+  EXPECT_EQ(ics.take_changes(), 2u);
+  ics.watch(1, pulse, 301);
+  EXPECT_EQ(ics.take_changes(), 0u) << "as before";
+  ics.watch(2, count, 302);  // all that a reset begins has come to rest
+  EXPECT_EQ(ics.take_changes(), 4u);
+  EXPECT_EQ(ics.next_event(), kNever);
+  const auto write = [&ics](unsigned ic, bool x, std::uint32_t offset, std::uint32_t value, Tick t) {
+    ics.write(ic, x, offset, value, t);
+  };
+  for (const unsigned ic : {0u, 1u}) {
+    write(ic, true, kChannelControl, 0x800000, 303);
+    EXPECT_EQ(ics.take_changes(), 1u << ic);
+    write(ic, false, kOutC, ic == 0 ? 0x040000 : 0x068000, 303);
+    EXPECT_EQ(ics.take_changes(), 1u << ic);
+  }
+  EXPECT_EQ(ics.next_clock_event(), kNever);
+  std::vector<unsigned> looks(4);
+  Tick now = 303;
+  for (int n = 0; n < 60; ++n) {
+    const Tick next = ics.next_event();
+    ASSERT_GT(next, now);
+    EXPECT_FALSE(ics.advance(now = next)) << "no clock moves";
+    const std::uint32_t changes = ics.take_changes();
+    ASSERT_LT(changes, 4u) << "IC 2 has none";
+    ASSERT_GT(changes, 0u);
+    ++looks[changes];
+  }
+  EXPECT_GT(looks[1], 5u);
+  EXPECT_GT(looks[2], 5u);
+
+  ics.set_clocks(true, true, now);
+  ics.set_trip(false, now);
+  ics.set_macro_gates(0, now);
+  ics.send_adc(0, {}, now);
+  EXPECT_EQ(ics.take_changes(), 0u) << "nothing has moved";
+  ics.set_clocks(false, true, now);
+  EXPECT_EQ(ics.take_changes(), 7u);
+  ics.set_clocks(false, true, now);
+  EXPECT_EQ(ics.take_changes(), 0u);
+  ics.set_motor_inputs(2, {}, now);
+  EXPECT_EQ(ics.take_changes(), 4u);
+  EXPECT_EQ(ics.next_clock_event(), kNever) << "an IC that follows them";
+  ics.set_trip(true, now);
+  EXPECT_EQ(ics.take_changes(), 7u);
+  ics.set_trip(true, now);
+  EXPECT_EQ(ics.take_changes(), 0u);
+  EXPECT_EQ(ics.next_event(), kNever) << "no pulses any more";
+  write(1, true, kPwmWord, 100 << 8, now);
+  EXPECT_EQ(ics.take_changes(), 2u);
+  EXPECT_EQ(ics.next_clock_event(), kNever);
+  write(2, true, kClockWord, 0, now);
+  EXPECT_EQ(ics.next_clock_event(), now + 1) << "it will drive them";
+  EXPECT_EQ(ics.next_event(), now + 1);
+  EXPECT_EQ(ics.drivers().phase, 0u);
+  EXPECT_TRUE(ics.advance(now + 1));
+}
+
+}  // namespace
+}  // namespace brick
