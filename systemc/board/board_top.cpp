@@ -135,7 +135,7 @@ void BoardTop::execute(Tick t) {
     take_straps(inputs_, t);
     changed |= parts(kStraps);
   }
-  if (ic.read || ic.write) take_access(ic, t, changed);
+  take_access(ic, t, changed);
   now_ = t;
   connect(changed);
   schedule(touched_);

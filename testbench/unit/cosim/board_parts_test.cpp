@@ -132,6 +132,9 @@ class BoardProbe {
     board_->strobe_wired_ = strobe;
     board_->connect(changed);
   }
+  std::uint32_t touched() const { return board_->touched_; }
+  std::size_t history() const { return board_->gate_ics_.history_.size(); }
+  void clocks(bool phase, bool servo, Tick t) { board_->gate_ics_.set_clocks(phase, servo, t); }
   void rest() {  // all edges are over
     board_->each_block(BoardTop::kEveryBlock, [this](unsigned, auto& block) { block.advance(board_->now_); });
   }
@@ -149,7 +152,8 @@ class BoardProbe {
            ((all & ~(1u << BoardTop::kBusSync | 1u << BoardTop::kDpram)) != 0 ? "others " : "") +
            (board_->next_own_ != kNever ? "at once" : "");
   }
-  static constexpr std::uint32_t kEverything = BoardTop::kEverything, kBusSync = 1u << BoardTop::kBusSync,
+  static constexpr std::uint32_t kEverything = BoardTop::kEverything, kIsaPins = 1u << BoardTop::kIsaPins,
+                                 kIsaSlave = 1u << BoardTop::kIsaSlave, kBusSync = 1u << BoardTop::kBusSync,
                                  kHostPort = 1u << BoardTop::kHostPort;
 
  private:
@@ -211,6 +215,65 @@ TEST(BoardParts, AreWiredToWhatHangsOnThemAndNothingElse) {
       ASSERT_FALSE(wired(BoardProbe::kBusSync, false)) << wire.name << ", without a strobe";
     }
   }
+}
+
+// A wire whose level stays touches nobody; the host bus is taken over as it is.
+TEST(BoardParts, AreTouchedByWiresThatMove) {
+  BoardProbe probe(2);
+  probe.connect(BoardProbe::kEverything & ~BoardProbe::kIsaPins, true);
+  EXPECT_EQ(probe.touched(), 0u);
+  probe.connect(BoardProbe::kEverything, true);
+  EXPECT_EQ(probe.touched(), BoardProbe::kIsaSlave);
+  probe.set();
+  EXPECT_EQ(probe.touched(), 0u);
+}
+
+// The list of the clocks' edges ends with a long regular stretch, and then only.
+TEST(BoardParts, CatchUpWithALongRegularStretch) {
+  BoardProbe probe(0);
+  Tick t = probe.board().now();
+  bool phase = true, servo = true;
+  const auto edge = [&](Tick after) {
+    phase = !phase;
+    if (!phase) servo = !servo;
+    probe.clocks(phase, servo, t += after);
+  };
+  const std::size_t before = probe.history();
+  for (int n = 0; n < 200; ++n) edge(99);
+  EXPECT_EQ(probe.history(), before + 200);
+  edge(100);
+  EXPECT_EQ(probe.history(), 1u);
+  edge(99);
+  EXPECT_EQ(probe.history(), 2u);
+}
+
+// Numbers of ICs that there are not, of servo ICs and of MACRO ICs, and those of ICs that are not built.
+TEST(BoardParts, OfNoIcAreNone) {
+  BoardProbe probe(0);
+  BoardTop& board = probe.board();
+  unsigned changes = 0;
+  board.on_motor_change = [&](Tick, unsigned, const MotorOutputs&, const MotorOutputs&) { ++changes; };
+  MotorInputs moved;
+  moved.pins.fill(0xFFF);
+  MotorDigest& digest = *board.motor_digest();
+  for (const unsigned ic : {2u, 17u, 18u, 19u, 22u}) {
+    board.set_motor_inputs(ic, moved);
+    board.watch_motor(ic, kAllMotorOutputs);
+    board.stop_on_motor(ic, kAllMotorOutputs);
+    EXPECT_EQ(board.motor_outputs(ic), MotorOutputs{});
+    EXPECT_EQ(board.servo_ic(ic), nullptr);
+    EXPECT_EQ(digest.dac_lines(ic), ConverterWords{});
+    EXPECT_EQ(digest.adc_stream(ic).clocks, 0);
+    EXPECT_EQ(digest.adc_lines(ic, true), 0u);
+    EXPECT_EQ(digest.pwm_times(ic, 0).shorts, 0u);
+    digest.send_adc(ic, {});
+  }
+  for (const unsigned ic : {1u, 3u, 4u, 5u}) EXPECT_EQ(board.macro_ic(ic), nullptr);
+  EXPECT_NE(board.macro_ic(0), nullptr);
+  EXPECT_NE(board.servo_ic(0), nullptr);
+  EXPECT_NE(board.servo_ic(1), nullptr);
+  board.run_until(board.now() + 50'000);
+  EXPECT_EQ(changes, 0u);
 }
 
 // Inputs that stay as they are are not looked at, of those that move their own group.
