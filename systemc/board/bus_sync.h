@@ -113,7 +113,7 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
     bool under_way() const {
       return falls0 != falls1 || falls1 != falls2 || falls2 != falls3 || falls3 != seen || taken || shown;
     }
-    // The edge at which the access is made, at the earliest.
+    // The edge at which the access is made, at the earliest; never, or later, where nothing is under way.
     Tick made(Tick now) const {
       if (taken || shown) return next_ref_edge(now);
       const Tick arrives = falls3 != seen     ? 1
@@ -121,7 +121,7 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
                            : falls1 != falls2 ? 3
                            : falls0 != falls1 ? 4
                                               : kNever;
-      return arrives == kNever ? kNever : next_ref_edge(now + arrives - 1) + kTicksPerRef;
+      return next_ref_edge(now + arrives - 1) + kTicksPerRef;
     }
   };
 

@@ -59,7 +59,6 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
   }
   void reset(Tick t) override {
     q_ = Drivers{};
-    conflict_ = false;
     disagree_ = 0;
     ext_phase_ = ext_servo_ = Sync2{true, true};
     phase_level_q_ = servo_level_q_ = ~0u;

@@ -41,10 +41,8 @@ class Watchdog final : public sc_core::sc_module, public ModelBlock {
       if (reload_strobe) strobe_end_ = end_after(edge_);
       if (reload_servo) servo_end_ = end_after(edge_);
     }
-    if (edge_ < last) {
-      trip_ = trip_ || std::min(strobe_end_, servo_end_) <= last;
-      edge_ = last;
-    }
+    trip_ = trip_ || std::min(strobe_end_, servo_end_) <= last;
+    edge_ = last;
     if (edge_ > 0) relay_ = !trip_;
   }
 

@@ -57,6 +57,43 @@ TEST(ClockSelectModel, AnyTwoDriversFightAndTheLowestWins) {
         }
 }
 
+// Whoever is left, the conflict is over: two that join him and agree do not find it. A reset lets all drivers go.
+TEST(ClockSelectModel, AConflictIsOverWithOneDriver) {
+  for (const bool servo : {false, true})
+    for (const unsigned left : {0u, 1u, 5u}) {
+      SCOPED_TRACE(::testing::Message() << (servo ? "SERVO" : "PHASE") << ", IC " << left);
+      ClockSelect select(sc_core::sc_gen_unique_name("select"));
+      std::uint32_t &drivers = servo ? select.in.servo : select.in.phase,
+                    &level = servo ? select.servo_level : select.phase_level;
+      Tick now = 0;
+      const auto run = [&](Tick ticks) {
+        for (const Tick end = now + ticks; now < end;) select.advance(++now);
+      };
+      select.reset(0);
+      drivers = 1u << left | 1u << 7;
+      level = ~(1u << left);
+      run(20);
+      ASSERT_TRUE(select.conflict());
+      drivers = 1u << left;
+      run(20);
+      level = ~0u;
+      run(20);
+      drivers = 1u << left | 1u << 7 | 1u << 9;
+      run(20);
+      EXPECT_FALSE(select.conflict());
+      level = ~(1u << left);
+      run(20);
+      ASSERT_TRUE(select.conflict());
+      select.reset(now);
+      EXPECT_FALSE(select.conflict());
+      EXPECT_EQ(select.phase_source(), std::uint32_t{regs::clock_source::kNone});
+      EXPECT_TRUE(servo ? select.servo() : select.phase());
+      level = ~0u;
+      run(20);
+      EXPECT_FALSE(select.conflict());
+    }
+}
+
 TEST(ClockSelectModel, TwoThatAgreeDoNotFight) {
   for (const std::uint32_t low : {0u, 0x3u}) {
     Nets nets(false, 0x3, low);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "systemc/board/board_top.h"
+#include "systemc/core/start_value.h"
 
 namespace brick {
 
@@ -133,6 +134,25 @@ class BoardProbe {
     board_->connect(changed);
   }
   std::uint32_t touched() const { return board_->touched_; }
+  std::uint32_t interrupting() const { return board_->gate_ics_.interrupting_; }
+  std::uint32_t lines() const { return board_->selected_lines(); }
+  std::uint32_t drives() const { return board_->gate_ics_.drives_; }
+  void write_ic(unsigned ic, unsigned offset, std::uint32_t value) {
+    board_->gate_ics_.write(ic, true, offset, value, board_->now_);
+  }
+  void wake() { board_->next_own_ = board_->now_ + 1; }
+  // Of the blocks that are looked at seldom one is to do something at `next`, the first of them at `seldom`.
+  bool due(Tick next, Tick seldom, Tick t) {
+    board_->next_.fill(kNever);
+    board_->next_[BoardTop::kSsi] = next;
+    board_->seldom_ = seldom;
+    return board_->due(t) != 0;
+  }
+  Tick seldom_behind(bool ssi) {
+    board_->seldom_ = 5;
+    board_->schedule(1u << (ssi ? BoardTop::kSsi : BoardTop::kDpram));
+    return board_->seldom_;
+  }
   std::size_t history() const { return board_->gate_ics_.history_.size(); }
   void clocks(bool phase, bool servo, Tick t) { board_->gate_ics_.set_clocks(phase, servo, t); }
   void rest() {  // all edges are over
@@ -144,13 +164,15 @@ class BoardProbe {
   std::uint16_t& cpu_data() { return board_->dpram_.in.cpu_wdata; }
   // The buses' blocks that the pins of Port A have touched, and whether a pin follows them without a clock.
   std::string touched(const BoardInputs& inputs) {
-    board_->touched_ = 0;
+    board_->touched_ = 1u << BoardTop::kSsi;
     board_->set_port_a(inputs);
     const std::uint32_t all = board_->touched_;
     return std::string((all >> BoardTop::kBusSync & 1) != 0 ? "bus_sync " : "") +
            ((all >> BoardTop::kDpram & 1) != 0 ? "dpram " : "") +
            ((all & ~(1u << BoardTop::kBusSync | 1u << BoardTop::kDpram)) != 0 ? "others " : "") +
-           (board_->next_own_ != kNever ? "at once" : "");
+           (board_->next_own_ == kNever             ? ""
+            : board_->next_own_ == board_->now_ + 1 ? "at once"
+                                                    : "at another time");
   }
   static constexpr std::uint32_t kEverything = BoardTop::kEverything, kIsaPins = 1u << BoardTop::kIsaPins,
                                  kIsaSlave = 1u << BoardTop::kIsaSlave, kBusSync = 1u << BoardTop::kBusSync,
@@ -245,6 +267,108 @@ TEST(BoardParts, CatchUpWithALongRegularStretch) {
   EXPECT_EQ(probe.history(), 1u);
   edge(99);
   EXPECT_EQ(probe.history(), 2u);
+}
+
+// Blocks with little to do are looked at when one of them has, and asked when one of them moves.
+TEST(BoardParts, SeldomBlocksAreLeftAlone) {
+  BoardProbe probe(0);
+  EXPECT_FALSE(probe.due(7, 9, 8));
+  EXPECT_TRUE(probe.due(7, 7, 8));
+  EXPECT_FALSE(probe.due(9, 8, 8));
+  EXPECT_EQ(probe.seldom_behind(false), 5);
+  EXPECT_GT(probe.seldom_behind(true), 1000);
+}
+
+// At an edge of clk_ref, whatever else wakes the board.
+TEST(BoardParts, StrapsAreTakenByClkRef) {
+  for (Tick at = 0; at < kTicksPerRef; ++at) {
+    BoardProbe probe(0);
+    BoardTop& board = probe.board();
+    board.run_until(300 + at);
+    probe.inputs().line_select = 0x2951;  // EQU1, EQU5 and the watchdog; it has three digits
+    probe.set();
+    for (Tick t = 300 + at; t < next_ref_edge(300 + at); ++t) {
+      ASSERT_EQ(board.now(), t);
+      EXPECT_TRUE(probe.straps_differ());
+      probe.wake();
+      board.run_until(t + 1);
+    }
+    EXPECT_FALSE(probe.straps_differ());
+    EXPECT_EQ(probe.interrupting(), 0x11u);
+  }
+}
+
+// EQU of ICs that are fitted, by the three digits of line_select.
+TEST(BoardParts, LinesAreOfIcsThatAreFitted) {
+  constexpr std::uint32_t kSet =
+      regs::servo_channel::control::kEquWrite.mask() | regs::servo_channel::control::kEquState.mask();
+  BoardProbe probe(0);
+  BoardTop& board = probe.board();
+  const auto strap = [&](std::uint32_t fitted, std::uint16_t lines) {
+    probe.inputs().fitted = fitted;
+    probe.inputs().line_select = lines;
+    probe.set();
+    board.run_until(board.now() + 6);
+    return probe.lines();
+  };
+  for (const unsigned ic : {0u, 1u}) probe.write_ic(ic, 5, kSet);  // EQU1, EQU5
+  for (std::uint32_t fitted = 0; fitted < 4; ++fitted) {
+    EXPECT_EQ(strap(fitted, 0x1051), fitted);
+    EXPECT_EQ(strap(fitted, 0x5160), fitted << 2 & 4) << "EQU6 is off";
+  }
+}
+
+// An IC drives the clocks from its word on until it has let them go.
+TEST(BoardParts, DriversAreThoseThatDrive) {
+  BoardProbe probe(0);
+  BoardTop& board = probe.board();
+  EXPECT_EQ(probe.drives(), 0u);
+  probe.write_ic(1, 0x0C, 0);
+  EXPECT_EQ(probe.drives(), 0u);
+  probe.write_ic(1, 4, 0x0008D2);
+  EXPECT_EQ(probe.drives(), 2u);
+  board.run_until(board.now() + 200'000);
+  EXPECT_EQ(probe.drives(), 2u);
+  probe.write_ic(1, 4, 0x0038D2);
+  board.run_until(board.now() + 400'000);
+  EXPECT_EQ(probe.drives(), 0u);
+}
+
+// What an IC has done before a reset counts, though nobody has asked; and in the reset nothing is to come.
+TEST(BoardParts, AResetEndsWhatWasUnderWay) {
+  PwmTimes times[2];
+  for (const bool asked : {false, true}) {
+    BoardProbe probe(0);
+    BoardTop& board = probe.board();
+    MotorDigest& digest = *board.motor_digest();
+    board.servo_ic(0)->write(false, 2, 0x300000);
+    board.run_until(90'000);
+    if (asked) digest.pwm_times(0, 0);
+    const BoardOutputs any = select_pins(pin::kBreq);
+    probe.inputs().rst_n = false;
+    probe.set();
+    EXPECT_EQ(board.quiet_until(any), 90'000);
+    board.run_until(90'010);
+    EXPECT_EQ(board.quiet_until(any), kNever);
+    probe.inputs().rst_n = true;
+    probe.set();
+    const Tick end = next_ref_edge(90'010) + kTicksPerRef + 2;
+    EXPECT_EQ(board.quiet_until(any), end);
+    board.run_until(end + 1);
+    EXPECT_GT(board.quiet_until(any), end + 1);
+    times[asked] = digest.pwm_times(0, 0);
+  }
+  EXPECT_EQ(times[0].balance, times[1].balance);
+  EXPECT_NE(times[0].balance[0], 0);
+}
+
+// The dual-ported RAM begins with what the seed of the board makes of it (systemc/core/start_value.h).
+TEST(BoardParts, TheRamBeginsByTheSeed) {
+  for (const std::uint64_t seed : {1, 2}) {
+    BoardTop board(sc_core::sc_gen_unique_name("seeded"), 0x3, seed);
+    for (const unsigned word : {0u, 1u, 12345u, Dpram::kWords - 1})
+      EXPECT_EQ(board.dpram_word(word), start_word(start_seed(seed), word)) << seed << ", " << word;
+  }
 }
 
 // Numbers of ICs that there are not, of servo ICs and of MACRO ICs, and those of ICs that are not built.

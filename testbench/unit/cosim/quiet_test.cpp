@@ -90,6 +90,20 @@ TEST(QuietBoard, PromisesNothingBeyondAWriteThatIsUnderWay) {
   }
 }
 
+// A cycle of the host may end in its interrupt, but moves no clock and trips no watchdog.
+TEST(QuietBoard, PromisesClocksAndTripDuringACycleOfTheHost) {
+  BoardRig rig(make_model_board(0x3), 0x3);
+  rig.run(100);
+  const auto quiet = [&](const auto&... pins) { return rig.board().quiet_until(select_pins(pins...)); };
+  const Tick clocks = quiet(pin::kPhase, pin::kServo), trip = quiet(pin::kWdTripped);
+  rig.in.isa_sa = 0x210;
+  rig.in.isa_ior_n = false;
+  rig.apply();
+  EXPECT_LT(quiet(pin::kIrqHost), rig.now() + 100);
+  EXPECT_EQ(quiet(pin::kPhase, pin::kServo), clocks);
+  EXPECT_EQ(quiet(pin::kWdTripped), trip);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, Quiet, ::testing::Range<std::uint64_t>(1, 13));
 
 }  // namespace
