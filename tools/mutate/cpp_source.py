@@ -18,8 +18,8 @@ FUNCTIONS = {CursorKind.FUNCTION_DECL, CursorKind.CXX_METHOD, CursorKind.CONSTRU
              CursorKind.CONVERSION_FUNCTION, CursorKind.FUNCTION_TEMPLATE}
 WORDS = {CursorKind.TYPE_REF, CursorKind.NAMESPACE_REF, CursorKind.TEMPLATE_REF, CursorKind.MEMBER_REF,
          CursorKind.PARM_DECL, CursorKind.OVERLOADED_DECL_REF, CursorKind.VARIABLE_REF}  # nothing that is computed
-INTEGERS = {TypeKind.INT, TypeKind.UINT, TypeKind.LONG, TypeKind.ULONG, TypeKind.LONGLONG, TypeKind.ULONGLONG,
-            TypeKind.SHORT, TypeKind.USHORT, TypeKind.UCHAR, TypeKind.SCHAR, TypeKind.CHAR_S}
+NARROW = {TypeKind.SHORT, TypeKind.USHORT, TypeKind.UCHAR, TypeKind.SCHAR, TypeKind.CHAR_S}  # with 1 added it is int
+INTEGERS = {TypeKind.INT, TypeKind.UINT, TypeKind.LONG, TypeKind.ULONG, TypeKind.LONGLONG, TypeKind.ULONGLONG, *NARROW}
 MARK = re.compile(rb"brick_mutant\((\d+)\)")
 ROUNDS = 30
 
@@ -140,10 +140,14 @@ class Finder(c_source.Finder):
 
     def constant(self, node):
         text, kind = self.text(node), node.type.get_canonical().kind
-        if not re.fullmatch(r"(\w+::)*k[A-Z]\w*", text):
+        if re.fullmatch(r"'(\\.|[^\\'])'", text):  # of its own type, which a template may ask for
+            self.add(node, "constant", f"char({text} + 1)")
+        elif not re.fullmatch(r"(\w+::)*k[A-Z]\w*", text):
             super().constant(node)
         elif kind == TypeKind.BOOL:
             self.add(node, "constant", f"!{text}")
+        elif kind in NARROW:
+            self.add(node, "constant", f"decltype({text})({text} + 1)")
         elif kind in INTEGERS and not text.endswith("kNever"):  # a tick later is never too
             self.add(node, "constant", f"({text} + 1)")
 

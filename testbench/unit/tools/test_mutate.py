@@ -116,6 +116,7 @@ class Places(unittest.TestCase):
 
 
 CPP = """#pragma once
+#include <algorithm>
 #include <string>
 struct Field { unsigned get(unsigned w) const { return w; } bool operator<(const Field&) const { return true; } };
 constexpr unsigned kTop = 9, kShort = kTop - 1;
@@ -145,11 +146,16 @@ class Counter {
   }
   std::string name(const std::string& host) {
     constexpr unsigned kOne = 1, kTwo = 2;
+    static constexpr unsigned short kPort = 7;
+    std::fill(ports_, ports_ + 2, std::max(kPort, ports_[0]));
+    std::replace(text_.begin(), text_.end(), ' ', '_');
     return '[' + host + ']' + std::to_string(kOne + count_);
   }
 
  private:
   State state_ = State::kIdle;
+  std::string text_;
+  unsigned short ports_[2];
   unsigned count_ = 0, last_;
 };
 """
@@ -183,7 +189,8 @@ class PlacesOfCpp(unittest.TestCase):
 
     def test_what_clang_underlines_goes_and_nothing_before_it(self):
         self.assertEqual(self.found("constexpr unsigned kOne"), [])
-        self.assertEqual(self.found("return '['"), ["kOne => (kOne + 1)", "kOne + count_ => kOne - count_"])
+        self.assertEqual(self.found("return '['"), ["'[' => char('[' + 1)", "']' => char(']' + 1)",
+                                                    "kOne => (kOne + 1)", "kOne + count_ => kOne - count_"])
         self.assertIn("0 => 1", self.found("if (!field) return table[0];"))
 
     def test_text_with_all_of_them_is_cpp(self):
@@ -192,6 +199,15 @@ class PlacesOfCpp(unittest.TestCase):
             one = pathlib.Path(folder) / "all.cpp"
             one.write_bytes(text)
             subprocess.run(["c++", "-std=c++17", "-fsyntax-only", "-w", str(one)], check=True)
+
+    def test_a_narrow_constant_keeps_its_type_for_a_template(self):
+        alone = [m for m in self.mutants if m.place.old in ("' '", "'_'", "kPort")]
+        self.assertEqual(len(alone), 3)
+        with tempfile.TemporaryDirectory() as folder:
+            for m in alone:  # without the others, which could lend it theirs
+                one = pathlib.Path(folder) / "one.cpp"
+                one.write_bytes(schemata.write(CPP.encode(), [m], schemata.C(self.file)))
+                subprocess.run(["c++", "-std=c++17", "-fsyntax-only", "-w", str(one)], check=True)
 
 
 class Alone(unittest.TestCase):
