@@ -57,7 +57,7 @@ void EthernetConnection::take_packets() {
 }
 
 void EthernetConnection::close_when_done() {
-  if (closed_ || under_way_ > 0 || !replies_.empty()) return;
+  if (under_way_ > 0 || !replies_.empty()) return;
   if (!packets_.broken().empty())
     close(packets_.broken());
   else if (ended_)
@@ -65,7 +65,6 @@ void EthernetConnection::close_when_done() {
 }
 
 void EthernetConnection::reply(std::string bytes) {
-  if (closed_) return;
   --under_way_;
   replies_.push_back(std::move(bytes));
   if (replies_.size() == 1) write();
@@ -75,7 +74,6 @@ void EthernetConnection::reply(std::string bytes) {
 void EthernetConnection::write() {
   asio::async_write(socket_, asio::buffer(replies_.front()),
                     [self = shared_from_this()](asio::error_code error, std::size_t) {
-                      if (self->closed_) return;
                       if (error) return self->close("");
                       self->replies_.pop_front();
                       if (!self->replies_.empty()) return self->write();

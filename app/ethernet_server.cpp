@@ -27,9 +27,9 @@ tcp::endpoint endpoint_of(asio::io_context& io, const std::string& place) {
   const auto [host, port] = parse_place("--listen", place, "127.0.0.1:1025");
   asio::error_code error;
   const auto found = tcp::resolver(io).resolve(host, port, tcp::resolver::numeric_service, error);
-  if (error || found.empty())
-    throw UsageError(fmt::format("--listen {}: {}; expected a name or address of this machine", place,
-                                 error ? error.message() : "no address"));
+  if (error)
+    throw UsageError(
+        fmt::format("--listen {}: {}; expected a name or address of this machine", place, error.message()));
   return found.begin()->endpoint();
 }
 
@@ -158,17 +158,15 @@ void EthernetServer::Impl::receive() {
 }
 
 EthernetServer::Client EthernetServer::Impl::peer(const udp::endpoint& endpoint) {
-  const Peer* oldest = nullptr;
-  Client old = 0;
-  for (auto& [client, known] : peers) {
-    if (known.endpoint == endpoint) return client;
-    if (known.under_way > 0 || (oldest != nullptr && known.heard >= oldest->heard)) continue;
-    oldest = &known;
-    old = client;
+  auto oldest = peers.end();
+  for (auto at = peers.begin(); at != peers.end(); ++at) {
+    const Peer& known = at->second;
+    if (known.endpoint == endpoint) return at->first;
+    if (known.under_way == 0 && (oldest == peers.end() || known.heard < oldest->second.heard)) oldest = at;
   }
   if (peers.size() >= kMostClients) {
-    if (oldest == nullptr) return 0;
-    forget(old);
+    if (oldest == peers.end()) return 0;
+    forget(oldest->first);
   }
   peers[++last].endpoint = endpoint;
   return last;

@@ -17,8 +17,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "app/ethernet_server.h"
 #include "systemc/core/usage_error.h"
 
@@ -155,16 +153,21 @@ TEST_F(EthernetClients, SixteenRequestsOfOneMayWait) {
 // ethernet:1/9: what is under way may come in, one read ahead, and no more until the reply has gone.
 TEST_F(EthernetClients, OneThatDoesNotTakeItsReplyIsNotReadFrom) {
   tcp::socket one = client();
-  send(one, request(1));
-  ASSERT_TRUE(are_asked(1));
+  for (unsigned n = 1; n <= 3; ++n) {  // however many it has taken before
+    send(one, request(n));
+    ASSERT_TRUE(are_asked(n));
+    if (n == 3) break;
+    server_->reply(asked_[0].client, "ok");
+    EXPECT_EQ(receive(one, 2), "ok");
+  }
   const std::string large(64 << 20, 'x');
   server_->reply(asked_[0].client, large);
-  send(one, request(2));
-  ASSERT_TRUE(are_asked(2));
-  send(one, request(3));
-  EXPECT_EQ(asked_within(50ms, 2), 2u);
+  send(one, request(4));
+  ASSERT_TRUE(are_asked(4));
+  send(one, request(5));
+  EXPECT_EQ(asked_within(50ms, 4), 4u);
   EXPECT_EQ(receive(one, large.size()), large);
-  EXPECT_TRUE(are_asked(3));
+  EXPECT_TRUE(are_asked(5));
 }
 
 // A client that has sent all it has may still listen: it is answered, then the connection goes.
@@ -216,8 +219,7 @@ TEST_F(EthernetClients, OneThatSendsWhatIsNoRequestIsCutOff) {
   EXPECT_EQ(receive(one, 2), "a");
   EXPECT_TRUE(is_closed(one));
   EXPECT_TRUE(comes([this] { return closed_.size() == 1; }));
-  EXPECT_EQ(troubles_,
-            std::vector<std::string>{fmt::format("client {} is cut off: request 99 is not known", asked_[0].client)});
+  EXPECT_EQ(troubles_, std::vector<std::string>{"client 1 is cut off: request 99 is not known"});
   EXPECT_EQ(asked_.size(), 1u);
   tcp::socket two = client();
   send(two, std::string("\x40\xBF\0\0\0\0\x05\xD5", 8));  // 1493 bytes of data

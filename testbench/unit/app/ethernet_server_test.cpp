@@ -172,5 +172,31 @@ TEST(EthernetConnections, AClientThatSaysNothingIsAskedWhetherItIsThere) {
   EXPECT_EQ(option(IPPROTO_TCP, TCP_NODELAY), 1);
 }
 
+// One that is gone, with a request behind the one whose reply it did not take: it is gone at once, whatever else of it
+// is under way, and nothing of it is begun behind that.
+TEST(EthernetConnections, NothingIsAskedByOneThatIsGone) {
+  asio::io_context io;
+  tcp::acceptor acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), 0));
+  tcp::socket client(io), socket(io);
+  client.connect(acceptor.local_endpoint());
+  acceptor.accept(socket);
+  const auto connection = std::make_shared<EthernetConnection>(std::move(socket), 16);
+  int asked = 0, closed = 0, late = 0;
+  connection->on_request = [&](const EthernetPacket&) { ++(closed != 0 ? late : asked); };
+  connection->on_close = [&](const std::string&) { ++closed; };
+  connection->start();
+  const auto ask = [&client] { asio::write(client, asio::buffer("\xC0\xC2\0\0\0\0\0\2", 8)); };
+  for (int n = 0; n < 2; ++n) ask();
+  while (asked < 2) io.run_one();
+  connection->reply(std::string(64 << 20, 'x'));
+  io.poll();  // as much of it as the system takes
+  ask();
+  client.set_option(asio::socket_base::linger(true, 0));  // reset
+  client.close();
+  io.run();
+  EXPECT_EQ(closed, 1);
+  EXPECT_EQ(late, 0);
+}
+
 }  // namespace
 }  // namespace brick
