@@ -14,18 +14,18 @@ namespace brick {
 enum class IsaCommand { kIoRead, kIoWrite, kMemoryRead, kMemoryWrite };
 
 struct IsaCycle {
-  IsaCommand command = IsaCommand::kIoRead;
-  std::uint32_t address = 0;
-  std::uint16_t data = 0;
-  bool sbhe = false;  // the upper lane is used
+  IsaCommand command;
+  std::uint32_t address;
+  std::uint16_t data;
+  bool sbhe;  // the upper lane is used
   bool memory() const { return command == IsaCommand::kMemoryRead || command == IsaCommand::kMemoryWrite; }
   bool write() const { return command == IsaCommand::kIoWrite || command == IsaCommand::kMemoryWrite; }
 };
 
 struct IsaResult {
-  std::uint16_t data = 0;  // as it stood on the bus
-  bool narrow = false;     // a memory cycle of eight bits
-  bool stuck = false;      // IOCHRDY stayed low for longer than t10
+  std::uint16_t data;  // as it stood on the bus
+  bool narrow;         // a memory cycle of eight bits
+  bool stuck;          // IOCHRDY stayed low for longer than t10
 };
 
 class IsaMaster {
@@ -72,14 +72,14 @@ class IsaMaster {
   TimeFs before(Step step) const;
   void address(IsaPins& pins) const;
 
-  IsaCycle cycle_;
-  IsaResult result_;
-  isa::HostTimes all_ = isa::kTypical;
-  isa::CycleTimes times_{};
-  unsigned width_ = 16;
   Step step_ = Step::kIdle;
-  bool data_next_ = false, data_driven_ = false;  // write data is the next point
-  TimeFs start_ = 0, high_ = 0;                   // high_: the command ends
+  IsaCycle cycle_{};  // from here on as begin() sets them
+  IsaResult result_{};
+  isa::HostTimes all_{};
+  isa::CycleTimes times_{};
+  unsigned width_{};
+  bool data_next_{}, data_driven_{};  // write data is the next point
+  TimeFs start_{}, high_{};           // high_: the command ends
 };
 
 }  // namespace brick

@@ -126,6 +126,15 @@ TEST_F(PciBridgeTest, ConfigurationSpaceSaysWhatItIs) {
   EXPECT_EQ(read(PciSpace::kConfiguration, PciBridge::kId + 2, 2), 0x5678u);
 }
 
+// host-bus:3.6/6: parameters; where none are given vendor $D17A, which is nobody's, and revision 0.
+TEST_F(PciBridgeTest, TheNumbersAreItsOwnWhereNoneAreGiven) {
+  PciBridge plain(sc_core::sc_gen_unique_name("plain"), {0x210, 0xD0000, 0x10000});
+  target_ = &plain;
+  EXPECT_EQ(configuration(PciBridge::kId), 0x0001D17Au);
+  EXPECT_EQ(configuration(PciBridge::kSubsystem), 0x0001D17Au);
+  EXPECT_EQ(configuration(PciBridge::kClass), 0x06800000u);
+}
+
 // host-bus:3.6/4: until the computer's start-up has been there nobody answers but the configuration space.
 TEST_F(PciBridgeTest, NothingIsEnabledAfterPowerOn) {
   PciBridge fresh("fresh", {0x210, 0xD0000, 0x10000});
