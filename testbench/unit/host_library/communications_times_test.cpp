@@ -172,6 +172,25 @@ TEST_F(CommunicationsTimes, EachWaitIsExact) {
   EXPECT_EQ(replied - begin, ns_to_ticks(500'000'000));
 }
 
+// However many requests wait that need no time of the controller: between two of them it has half a millisecond.
+TEST_F(CommunicationsTimes, AnswersGoOnBetweenRequestsThatNeedNoTime) {
+  fake().thinking = 2 * kMs;
+  std::vector<std::pair<unsigned, Tick>> replied;
+  processor_->on_reply = [&](CommunicationsProcessor::Client client, const Bytes&) {
+    replied.emplace_back(static_cast<unsigned>(client), bus_.now());
+  };
+  request(1, packet(Packet::kGetResponse, "ver"));
+  run();  // it has been sent
+  ASSERT_EQ(lines_, Lines{"ver"});
+  for (int i = 0; i < 10; ++i) request(2, packet(Packet::kReadReady, "", 0, 0, 0xC0, 2));
+  run(5 * kMs);
+  ASSERT_EQ(replied.size(), 11u);
+  EXPECT_EQ(replied[1].second - replied[0].second, ns_to_ticks(500'000));
+  EXPECT_LT(std::find_if(replied.begin(), replied.end(), [](const auto& reply) { return reply.first == 1; }),
+            replied.begin() + 5)
+      << "of a line that has its answer meanwhile";
+}
+
 // ------------------------------------------------------------------------------------------------- no end of an answer
 
 // ethernet:4/7
