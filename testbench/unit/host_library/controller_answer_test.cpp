@@ -75,6 +75,15 @@ TEST(ControllerAnswer, ThreeRightChecksumsAreBelieved) {
   }
 }
 
+// One is: with the first wrong one it is known that it was, also where nothing but silence ends the answer.
+TEST(ControllerAnswer, AWrongChecksumMakesARightOneText) {
+  for (const bool before : {false, true}) {
+    const Heard found = heard("A\rN\rX", "P1..3", before);
+    EXPECT_EQ(found.text, "A\rN\rX");
+    EXPECT_FALSE(found.sums || found.ended_by_itself);
+  }
+}
+
 // A value whose characters and CR sum up to ACK: 0x06 behind its CR is a checksum or the end.
 TEST(ControllerAnswer, AChecksumThatLooksLikeAnAcknowledge) {
   const Bytes value = "ZZ6";  // 5A + 5A + 36 + 0D = F7; + 0F
