@@ -175,10 +175,8 @@ bool CommunicationsProcessor::serve() {
 bool CommunicationsProcessor::serve(Client id, State& client) {
   const Request& first = client.requests.front();
   const Packet& packet = first.packet;
-  if (first.done) {
-    finish(id, client, packet.request == Packet::kControlResponse ? std::string(kExecuted, 1) : echo(packet));
-    return true;
-  }
+  if (first.done)
+    return finish(id, client, packet.request == Packet::kControlResponse ? std::string(kExecuted, 1) : echo(packet));
   if (begins_job(packet) && !client.started && dialogue_.busy()) {
     if (!(packet.request == Packet::kFlush && is_under_way(id))) return false;
     dialogue_.abandon();
@@ -186,12 +184,13 @@ bool CommunicationsProcessor::serve(Client id, State& client) {
   return carry_out(id, client, packet);
 }
 
-void CommunicationsProcessor::finish(Client id, State& client, const std::string& reply) {
+bool CommunicationsProcessor::finish(Client id, State& client, const std::string& reply) {
   client.requests.pop_front();
   --waiting_;
   client.started = false;
   client.since = bus_.now();
   on_reply(id, reply);
+  return true;
 }
 
 bool CommunicationsProcessor::carry_out(Client id, State& client, const EthernetPacket& packet) {
@@ -201,30 +200,24 @@ bool CommunicationsProcessor::carry_out(Client id, State& client, const Ethernet
     case Packet::kGetBuffer:
       return fetch(id, client, true);
     case Packet::kReadReady:
-      finish(id, client, {static_cast<char>(client.output.empty() ? 0 : 1), '\0'});
-      return true;
+      return finish(id, client, {static_cast<char>(client.output.empty() ? 0 : 1), '\0'});
     case Packet::kGetMemory:
     case Packet::kSetMemory:
     case Packet::kSetBit:
     case Packet::kSetBits:
-      finish(id, client, memory(packet));
-      return true;
+      return finish(id, client, memory(packet));
     case Packet::kPort:
-      finish(id, client, port(packet));
-      return true;
+      return finish(id, client, port(packet));
     case Packet::kWriteError:
-      finish(id, client, client.write_result);
-      return true;
+      return finish(id, client, client.write_result);
     case Packet::kDownloadFirmware:
-      finish(id, client, echo(packet));
-      return true;
+      return finish(id, client, echo(packet));
     case Packet::kAddress:
     case Packet::kHardwareAddress:
     case Packet::kDate:
     case Packet::kTime:
     case Packet::kVersion:
-      finish(id, client, identity(packet));
-      return true;
+      return finish(id, client, identity(packet));
     default:
       return dialogue_request(id, client, packet);
   }
@@ -242,12 +235,10 @@ bool CommunicationsProcessor::dialogue_request(Client id, State& client, const E
         dialogue_.begin_clear(packet.value == 0 ? kFlushWait : std::min(wait, kLongestFlush));
       }
       if (is_under_way(id)) return false;
-      finish(id, client, echo(packet));
-      return true;
+      return finish(id, client, echo(packet));
     case Packet::kSendLine:
       begin_lines(id, lines_of(packet.data, '\r'), false);
-      finish(id, client, echo(packet));
-      return true;
+      return finish(id, client, echo(packet));
     case Packet::kGetResponse:
       if (begins) {
         const std::vector<std::string> lines = lines_of(packet.data, '\r');
@@ -255,8 +246,7 @@ bool CommunicationsProcessor::dialogue_request(Client id, State& client, const E
         client.output.clear();
         begin_lines(id, lines, false);
         if (!options_.save_takes_long || !may_take_long(packet.data)) return false;
-        finish(id, client, std::string(kNothing, 1));
-        return true;
+        return finish(id, client, std::string(kNothing, 1));
       }
       return fetch(id, client, !client.joined);
     case Packet::kWriteBuffer: {
@@ -273,8 +263,7 @@ bool CommunicationsProcessor::dialogue_request(Client id, State& client, const E
       if (result.error || result.lost)
         client.write_result = {static_cast<char>(line), static_cast<char>(line >> 8),
                                static_cast<char>(result.error_number), '\x80'};
-      finish(id, client, client.write_result);
-      return true;
+      return finish(id, client, client.write_result);
     }
     default: {  // a control character
       const std::uint8_t c = control_of(packet);
@@ -289,8 +278,10 @@ bool CommunicationsProcessor::dialogue_request(Client id, State& client, const E
         dialogue_.send_at_once(c);
       }
       if (answers && is_under_way(id)) return false;
-      finish(id, client, !answers ? echo(packet) : is_report_control(c) ? control_answer() : std::string(kExecuted, 1));
-      return true;
+      return finish(id, client,
+                    !answers               ? echo(packet)
+                    : is_report_control(c) ? control_answer()
+                                           : std::string(kExecuted, 1));
     }
   }
 }
@@ -316,8 +307,7 @@ bool CommunicationsProcessor::fetch(Client id, State& client, bool whole_answer)
     if (!answering && bus_.now() < client.since + patience) return false;
     text = client.output.take(Packet::kMostReply);
   }
-  finish(id, client, text->empty() ? std::string(kNothing, 1) : *text);
-  return true;
+  return finish(id, client, text->empty() ? std::string(kNothing, 1) : *text);
 }
 
 // One line, without the controller's acknowledge.

@@ -66,7 +66,7 @@ class CommunicationsProcessor {
   bool serve();
   bool serve(Client id, State& client);
   bool carry_out(Client id, State& client, const EthernetPacket& packet);
-  void finish(Client id, State& client, const std::string& reply);
+  bool finish(Client id, State& client, const std::string& reply);  // true: it has been replied to
   bool dialogue_request(Client id, State& client, const EthernetPacket& packet);
   bool fetch(Client id, State& client, bool whole_answer);
   void begin_lines(Client id, const std::vector<std::string>& lines, bool stop_at_error);

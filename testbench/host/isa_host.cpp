@@ -96,7 +96,6 @@ void IsaHost::drive_at(TimeFs time, const std::function<void(HostInputs&)>& edit
 template <class Edit>
 void IsaHost::drive(TimeFs time, const Edit& edit) {
   if (machine_.aperture().on()) return drive_at(time, edit);
-  free_at_ = std::max(free_at_, time);
   IsaPins moved = machine_.inputs();
   edit(moved);
   if (moved == machine_.inputs()) return;

@@ -13,8 +13,7 @@ namespace brick {
 
 // What I3 and I4 say about the form of an answer. That of an error, I6, shows by itself.
 struct Framing {
-  unsigned i3 = 1;
-  unsigned i4 = 1;
+  unsigned i3, i4;
   bool checksums() const { return (i4 & 1) != 0; }
   bool operator==(const Framing& other) const { return i3 == other.i3 && checksums() == other.checksums(); }
 };
