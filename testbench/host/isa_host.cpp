@@ -15,10 +15,6 @@ IsaHost::IsaHost(Machine& machine) : machine_(machine), width_(machine.inputs().
 // ---------------------------------------------------------------------------------------------------------------- time
 
 void IsaHost::step_to(Tick limit, const BoardOutputs& stop_on) {
-  if (!on_edge_) {
-    machine_.run_until(limit, stop_on);
-    return;
-  }
   const BoardOutputs before = machine_.outputs();
   BoardOutputs stop = stop_on;
   for (unsigned i = 0; i < kBoardOutputWords; ++i) stop.w[i] |= watched_.w[i];

@@ -56,6 +56,22 @@ TEST_F(FramingTest, FollowsEveryChangeOfI3I4AndI6) {
   }
 }
 
+// A text is looked at with its checksum: one that comes later is none of the next.
+TEST_F(FramingTest, ATextIsOneWithTheChecksumBehindIt) {
+  reply("I4=1");
+  std::deque<std::uint8_t>& port = FakeMachine::last().to_host;
+  for (const std::string text : {"TEXT", "NEXT"}) {
+    const std::string line = controller.data(text);
+    ASSERT_GE(line.back(), ' ') << "seen if it is taken for text";
+    port.insert(port.end(), line.begin(), line.end() - 1);
+    link.poll();
+    EXPECT_EQ(link.take_unsolicited(), Lines{});
+    port.push_back(static_cast<std::uint8_t>(line.back()));
+    link.poll();
+    EXPECT_EQ(link.take_unsolicited(), Lines{text});
+  }
+}
+
 // Data lines before and behind the change have different forms.
 TEST_F(FramingTest, DataOnBothSidesOfAChange) {
   EXPECT_EQ(reply("P1 I3=3 P2 I4=1 P1"), (Lines{"25", "50", "25"}));

@@ -121,6 +121,20 @@ TEST_F(HostLinkTimes, ConnectingWaitsForAFirmwareThatStarts) {
   EXPECT_EQ(link.command("P1").lines, Lines{"25"});
 }
 
+// What answers the first line, in whatever form, is over when nothing has come for 2 ms.
+TEST_F(HostLinkTimes, ConnectingWaitsUntilTheFirstAnswerIsOver) {
+  int begun = 0;
+  fake.controller = [&](const std::string& line) {
+    if (line == "I3") return std::string("2\r\x06");
+    ++begun;
+    fake.later.emplace_back(bus.now(), "\nTE");
+    fake.later.emplace_back(bus.now() + 3 * kLinkMs / 2, "XT\r\x06");
+    return std::string();
+  };
+  EXPECT_TRUE(link.connect(100 * kLinkMs));
+  EXPECT_EQ(begun, 1);
+}
+
 // Whoever does not take I3=2 is asked again, not believed.
 TEST_F(HostLinkTimes, ConnectingLooksWhetherI3IsTwo) {
   for (const char* answer : {"1\r\x06", "\x06", "22\r\x06", "2\r",
