@@ -5,6 +5,7 @@
 #include "firmware/language/expression.h"
 #include "firmware/language/operators.h"
 
+/* Each node is held once, with two brackets and an operator at most. */
 enum { TO_COME = 4 * EXPRESSION_TEXT_NODES };
 
 /* Node number, or minus a character. */
@@ -13,9 +14,7 @@ struct pending {
   int16_t items[TO_COME];
 };
 
-static void hold(struct pending* p, int item) {
-  if (p->count < TO_COME) p->items[p->count++] = (int16_t)item;
-}
+static void hold(struct pending* p, int item) { p->items[p->count++] = (int16_t)item; }
 
 struct instruction expression_text_operation(const struct expression_text* x, uint32_t node, double* value) {
   const uint32_t at = x->at[node];

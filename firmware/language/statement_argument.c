@@ -110,7 +110,7 @@ static error_t comparator(struct lexer* lx, uint32_t* code) {
 }
 
 static error_t condition(struct lexer* lx, const struct statement_row* row, struct word_list* out) {
-  struct instruction in = {OP_CONDITION, code_number(row), 0, 0.0};
+  struct instruction in = {.operation = OP_CONDITION, .group = code_number(row)};
   bool more = true;
   if (!lexer_accept(lx, '(')) return ERR_DATA;
   while (more) {

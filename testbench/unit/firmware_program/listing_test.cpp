@@ -157,6 +157,7 @@ TEST_F(Listing, ABlankStandsWhereWordsWouldRunTogether) {
   EXPECT_EQ(listed("P1=Q1+$A F5"), "P1=Q1+$A F5");
   EXPECT_EQ(listed("IF(P1=$1 AND P2=$F)X5"), "IF(P1=$1 AND P2=$F)X5");
   EXPECT_EQ(listed("ABS A5"), "ABS A5");
+  EXPECT_EQ(listed("X$A:$B Y$C^$D Z5"), "X$A:$B Y$C^$D Z5") << "what follows an axis is its own";
 }
 
 TEST_F(Listing, TextIsKeptAsItWas) { EXPECT_EQ(listed("SENDP\"It; is  (5)\" CMD^x"), "SENDP\"It; is  (5)\"CMD^X"); }
