@@ -165,21 +165,18 @@ static void take_guesses(uint32_t motor, const struct search* s) {
 }
 
 /* Who changes the state of the loop ends a search (commutation_enable) and has left the loop as it shall be. */
-static bool is_taken_over(uint32_t motor, struct search* s) {
+static bool is_taken_over(uint32_t motor) {
   if (phase_motors[motor].searched) return false;
-  s->kind = SEARCH_NONE;
-  s->result = RESULT_NONE;
   phasing_set_searched(motor, false);
   return true;
 }
 
 /* A kill by the real-time task comes before it or behind it. */
-static void finish(uint32_t motor, struct search* s) {
+static void finish(uint32_t motor, const struct search* s) {
   const bool found = s->result == RESULT_FOUND;
   if (found && s->guesses) take_guesses(motor, s);
   const uint32_t state = hal_mask_real_time();
-  if (!is_taken_over(motor, s)) {
-    s->result = RESULT_NONE;
+  if (!is_taken_over(motor)) {
     phase_motors[motor].searched = false;
     phasing_set_searched(motor, false);
     if (found) phasing_set_missing(motor, false);
@@ -203,7 +200,7 @@ static void look_for_an_end(uint32_t motor, struct search* s) {
 void phasing_pass(void) {
   for (uint32_t left = phasing_searched; left != 0u; left &= left - 1u) {
     const uint32_t motor = (uint32_t)__builtin_ctz(left);
-    if (is_taken_over(motor, &searches[motor])) continue;
+    if (is_taken_over(motor)) continue;
     look_for_an_end(motor, &searches[motor]);
     if (searches[motor].result != RESULT_NONE) finish(motor, &searches[motor]);
   }
@@ -255,7 +252,7 @@ static bool begin_search(uint32_t motor) {
 
 bool phasing_begin(uint32_t motor) {
   if (!phasing_is_needed(motor)) return motor_close(motor);
-  if (phasing_is_searched(motor) && !is_taken_over(motor, &searches[motor])) return true;
+  if (phasing_is_searched(motor) && !is_taken_over(motor)) return true;
   if (phase_absolute_is_set(motor)) return begin_absolute(motor);
   return begin_search(motor);
 }
