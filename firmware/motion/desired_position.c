@@ -109,9 +109,8 @@ static void publish_master(uint32_t motor, const struct motor* m) {
 
 /* How far `wanted` is beyond the error that the loop would see in this interrupt. */
 static int64_t held_back(uint32_t motor, const struct desired_path* p, int64_t wanted) {
-  const int64_t error = wanted - position_loop_measured(motor), most = p->error_most;
-  if (error > most) return error - most;
-  return error < -most ? error + most : 0;
+  const int64_t error = wanted - position_loop_measured(motor);
+  return error - fixed_within_long(error, p->error_most);
 }
 
 /* The direction turns when the trajectory has come back by more than Ixx87. */

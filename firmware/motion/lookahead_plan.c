@@ -31,7 +31,7 @@ static void load_part(const struct look* l, uint32_t segment, uint32_t first, ui
 static int32_t cap_at(const struct look* l, uint32_t knot) {
   struct lookahead_record* ahead = lookahead_at(&l->buffer, knot);
   if (ahead->stops && !l->backward) return 0;
-  const int32_t before = knot == look_oldest(l) ? RATE_FULL : lookahead_before(&l->buffer, ahead)->cap;
+  const int32_t before = knot == look_oldest(l) ? ahead->cap : lookahead_before(&l->buffer, ahead)->cap;
   return before < ahead->cap || knot == look_end(l) ? before : ahead->cap;
 }
 

@@ -143,10 +143,10 @@ static void repeat(struct own_path* path) {
   if (path->repeats != OWN_PATH_ENDLESS) path->repeats--;
 }
 
+/* Of the time, below which `elapsed` is: neither is rounded so much that it came to 1. */
 static inline uint32_t fraction_of(const struct own_piece* piece, int64_t elapsed) {
   const uint32_t part = (uint32_t)(piece->shift < 0 ? elapsed >> -piece->shift : elapsed << piece->shift);
-  const uint64_t fraction = (uint64_t)part * piece->inverse >> 31;
-  return fraction > UINT32_MAX ? UINT32_MAX : (uint32_t)fraction;
+  return (uint32_t)((uint64_t)part * piece->inverse >> 31);
 }
 
 static inline int64_t position_in(const struct own_path* path, const struct own_piece* piece, int64_t elapsed) {

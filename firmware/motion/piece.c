@@ -20,8 +20,7 @@ void piece_set_time(struct piece* piece, int64_t time) {
 
 static uint32_t fraction_of(const struct piece* piece, int64_t elapsed) {
   if (elapsed >= piece->time) return UINT32_MAX;
-  const uint64_t part = fixed_multiply_high((uint64_t)elapsed << piece->shift, piece->inverse) >> 29;
-  return part > UINT32_MAX ? UINT32_MAX : (uint32_t)part;
+  return (uint32_t)(fixed_multiply_high((uint64_t)elapsed << piece->shift, piece->inverse) >> 29);
 }
 
 static uint32_t clamped(int64_t fraction) {
