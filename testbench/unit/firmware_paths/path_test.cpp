@@ -22,6 +22,29 @@ TEST(Path, TheLastStopHasTheRoomThatIsLeft) {
   EXPECT_EQ(path_ends(&p, 1), path_time(10) + path_time(8) / 2);
 }
 
+// motion:9.1/3: behind its end a move is at its end, to the bit; start and way alone miss it.
+TEST(Path, AnEndIsThePositionThatIsWritten) {
+  static path p;
+  static double position[AXIS_COUNT];
+  p = {};
+  p.count = 2;
+  const double ends[] = {0.9, 0.3};
+  for (int i = 0; i < 2; ++i) {
+    path_move& m = p.moves[i];
+    m.start[AXIS_X] = i == 0 ? 0.2 : ends[0];
+    m.end[AXIS_X] = ends[i];
+    m.delta[AXIS_X] = m.end[AXIS_X] - m.start[AXIS_X];
+  }
+  ASSERT_NE(p.moves[0].start[AXIS_X] + p.moves[0].delta[AXIS_X], ends[0]);
+  for (std::uint32_t count = 1; count <= 2; ++count) {
+    path_point point;
+    path_at_end(count, &point);
+    EXPECT_EQ(point.count, count);
+    path_axes_at(&p, &point, position);
+    EXPECT_EQ(position[AXIS_X], ends[count - 1]);
+  }
+}
+
 class PathErrors : public MovingMotors {};
 
 // firmware:7.10: a feedrate of 0 is error 8, whatever plans the move.
