@@ -352,6 +352,15 @@ TEST_F(AxisMatrix, WordsOfTbuf) {
   EXPECT_EQ(host(line), "0.8660254038 0.5 0 -0.5 0.8660254038 0 0 0 1 1 2 3");
 }
 
+// Their words are those of TBUF, whatever lies below it.
+TEST_F(AxisMatrix, BuffersBelowTbufAreNoMatrices) {
+  ASSERT_EQ(host("&16DEFINE CCBUF 30 &1DEFINE CCBUF 30"), "");
+  go({"TSEL2 ADIS70 DWELL1"});
+  EXPECT_EQ(host("RL$107E5,3"), "1 2 3");  // the last of the second's twelve: $A000 + 26624 - 48 + 21
+  go({"TSEL1 X0 Y0 Z0", "TSEL2 X10 Y10 Z10"});
+  stands_at(9, 8, 7);
+}
+
 TEST_F(AxisMatrix, SystemsShareThem) {
   ASSERT_EQ(host("&1#3->0"), "");
   ASSERT_EQ(host("I68=1"), "");

@@ -13,6 +13,7 @@ extern "C" {
 #include "firmware/hal/hal.h"
 #include "firmware/motion/commutation.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/phase_motor.h"
 #include "firmware/motion/phase_task.h"
 }
 

@@ -91,6 +91,30 @@ TEST_F(Commutation, BiasStaysOnTheOutputsOfAKilledMotor) {
   EXPECT_EQ(b(), -200);
 }
 
+// motion:3.2: of a motor that is killed nothing of a command is left, to the last bit.
+TEST_F(Commutation, AKilledMotorIsCommandedNothing) {
+  set("I177=-300 I156=0.001 I178=0.0004");
+  phase_motor& m = phase_motors[0];
+  for (const bool micro_steps : {false, true}) {
+    set(micro_steps ? "I196=1 I170=1" : "I196=0");
+    enable();
+    motors[0].velocity = 500000;
+    command(1000.5);
+    EXPECT_NE(m.d.command, 0);
+    EXPECT_EQ(m.q.command != 0, !micro_steps);
+    EXPECT_TRUE(m.step != 0 || m.step_parts != 0);
+    m.q.integrator = m.d.integrator = 1;
+    m.held = m.searched = true;
+    enable(false);
+    for (const std::int32_t left :
+         {std::int32_t{m.d.command}, std::int32_t{m.q.command}, m.q.integrator, m.d.integrator, std::int32_t{m.step}})
+      EXPECT_EQ(left, 0);
+    EXPECT_EQ(m.advance, 0u);
+    EXPECT_EQ(m.step_parts, 0u);
+    EXPECT_FALSE(m.held || m.searched || m.enabled);
+  }
+}
+
 // motion:3.2: 5 degrees at a velocity of 1,391,616 units is an Ixx56 of 0.0000204.
 TEST_F(Commutation, AdvanceTurnsTheAngleWithTheVelocity) {
   set("I171=36000 I156=0.0000204");

@@ -167,7 +167,11 @@ TEST_F(CurrentLoop, AKilledMotorPutsOutNothingAndForgetsItsSum) {
   EXPECT_NE(pwm(1), 0);
   enable(false);
   phase();
-  for (unsigned n = 0; n < 3; ++n) EXPECT_EQ(pwm(n), 0);
+  for (const int position : {0, 300, 512, 900, -200, -700}) {
+    stand_at(position);
+    phase();
+    for (unsigned n = 0; n < 3; ++n) EXPECT_EQ(y_word(kOutput + n), 0) << "not even a bit of its sine";
+  }
   EXPECT_EQ(x_word(kIntegrators), 0);
   measure(0.25, -0.125);
   phase();
@@ -235,6 +239,7 @@ TEST_F(CurrentLoop, ABrushMotorHasOneCurrent) {
   command(1000);
   phase(3);
   EXPECT_EQ(y_word(kCurrents), 0);
+  EXPECT_EQ(phase_motors[0].d.actual, 0);
   EXPECT_EQ(y_word(kIntegrators), 0);
   EXPECT_EQ(pwm(0), 0);  // Vd is 0, sin(0) is 0
   EXPECT_NE(pwm(1), 0);

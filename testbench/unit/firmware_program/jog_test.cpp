@@ -522,6 +522,30 @@ TEST_F(Jog, WhatHasBeenDroppedIsForgotten) {
   EXPECT_EQ(motors[0].trajectory, units(-1000));
 }
 
+// Nor one that is dropped at any pause while it is planned.
+TEST_F(Jog, WhatIsDroppedWhileItIsPlannedIsForgotten) {
+  set({0.25, 0, 50, 20}, 1);
+  unsigned when = 1;
+  for (;; ++when) {
+    motors[0].trajectory = 0;
+    ASSERT_TRUE(jog_to(0, units(1000)));
+    unsigned count = 0;
+    platform::real_time_in_slices([&] {
+      if (++count != when) return;
+      const std::uint32_t state = hal_mask_servo();
+      jog_drop(0);
+      hal_unmask(state);
+    });
+    if (count < when) break;
+    ASSERT_TRUE(jog_to(0, units(-100)));
+    double highest = -1;
+    for (int i = 0; i < 500 && jog_is_moving(0); ++i) highest = std::max(highest, step());
+    EXPECT_LE(highest, 0) << when;
+    EXPECT_EQ(motors[0].trajectory, units(-100)) << when;
+  }
+  EXPECT_GT(when, 10u);
+}
+
 // A request at any pause while two are planned that begin together: both begin, the one that is asked for again goes to
 // its new place.
 TEST_F(Jog, ARequestBehindAMoveThatWaitsForAnother) {

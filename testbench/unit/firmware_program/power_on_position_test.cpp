@@ -68,6 +68,17 @@ TEST_F(PowerOnPosition, IsShownAtOnce) {
   EXPECT_EQ(host("#1P"), "0");
 }
 
+// motion:4.4: Ixx80 bit 2 alone keeps a start from reading the sensor.
+TEST_F(PowerOnPosition, IsReadAtAStartUnlessIxx80Bit2Says) {
+  for (unsigned ixx80 = 0; ixx80 < 8; ++ixx80) {
+    ASSERT_EQ(host("I8000=0 I103=$10F0 I104=$10F0 I110=$10F8 I195=$180000 I126=0 I100=1"), "");
+    ASSERT_EQ(host("I180=" + std::to_string(ixx80) + " SAVE"), "");
+    *hal_y(0x10F8) = 0;
+    platform::reset("$$$");
+    EXPECT_EQ(motors[0].status.home_complete, (ixx80 & 4) == 0) << ixx80;
+  }
+}
+
 // motion:4.4/5: what an encoder has counted before a start is no movement, and a sensor's position is what it says.
 TEST_F(PowerOnPosition, CountsFromTheStartOn) {
   constexpr std::uint32_t kCounter = 0x78000 + SERVO_CHANNEL_X_SERVO_POSITION;  // twice the count

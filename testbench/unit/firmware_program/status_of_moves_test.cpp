@@ -4,6 +4,7 @@
 extern "C" {
 #include "firmware/base/dpram.h"
 #include "firmware/motion/jog.h"
+#include "firmware/motion/motor_target.h"
 #include "firmware/motion/protection.h"
 #include "firmware/run/run_control.h"
 }
@@ -40,6 +41,37 @@ TEST_F(StatusOfMoves, TheMode) {
     EXPECT_EQ(word(2) & 0x13u, mode.bits) << mode.line;
     EXPECT_EQ(word(2) & 0x2Cu, 0u) << mode.line;
     platform::servo_ticks(400);
+  }
+}
+
+// A piece has the motors that it moves and no others, and only for those it has an end (D:$C7 of motor 1).
+TEST_F(StatusOfMoves, APieceIsOfTheMotorsThatItMoves) {
+  fit({"1000X", "1000Y", "1000Z"});
+  ASSERT_EQ(host("#1->0"), "");  // 2 and 3 are left
+  const struct {
+    const char *mode, *line;
+    std::uint32_t motors;
+  } moves[] = {{"LINEAR TM100 TA20 TS5", "Y1 Z0", 0b010}, {"LINEAR TM100 TA20 TS5", "Z1", 0b100},
+               {"LINEAR TM100 TA20 TS5", "Y1 Z1", 0b110}, {"PVT100", "Y1:5 Z1:5", 0b110},
+               {"SPLINE1 TM100", "Y1 Z1", 0b110},         {"LINEAR", "DELAY100", 0}};
+  for (const auto& move : moves) {
+    SCOPED_TRACE(std::string(move.mode) + " " + move.line);
+    for (unsigned motor = 0; motor < 3; ++motor) motors[motor].trajectory = 77 * motor;
+    store({"INC", move.mode, move.line, "DWELL10"});
+    ASSERT_EQ(host("&1B1R"), "");
+    for (int i = 0; i < 200 && !cs().active; ++i) platform::servo_ticks(1);
+    platform::servo_ticks(5);
+    ASSERT_TRUE(cs().active);
+    piece_ring& ring = cs().ring;
+    ASSERT_FALSE(piece_ring_is_empty(&ring));
+    const std::uint32_t of = piece_ring_at(&ring, ring.executing)->move;
+    for (std::uint32_t n = ring.executing; n != ring.added && piece_ring_at(&ring, n)->move == of; ++n)
+      EXPECT_EQ(piece_ring_at(&ring, n)->motors, move.motors) << n - ring.executing;
+    for (unsigned motor = 0; motor < 3; ++motor)
+      EXPECT_EQ(motor_target(motor) != motors[motor].trajectory, (move.motors >> motor & 1u) != 0) << motor;
+    EXPECT_EQ(motors[0].trajectory, 0);
+    ticks(400);
+    ASSERT_FALSE(run_is_running(0));
   }
 }
 

@@ -1,4 +1,5 @@
 // Net desired position (motion:1.2), natively.
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,25 @@ TEST_F(DesiredPosition, IsTheTrajectory) {
   EXPECT_EQ(motors[0].desired_step, 7 * kCount);
   EXPECT_EQ(desired(7), 7);
   EXPECT_EQ(motors[0].desired_step, 0);
+}
+
+// A step that 32 bits do not hold is the last that they do, with a master and without.
+TEST_F(DesiredPosition, AStepHasTheEndsOf32Bits) {
+  for (const char* mode : {"I106=0", "I106=1"}) {
+    c_.line(mode);
+    close();
+    for (const std::int64_t step :
+         {INT64_C(0x7FFFFFFE), INT64_C(0x7FFFFFFF), INT64_C(0x80000000), INT64_C(1) << 40, -INT64_C(0x7FFFFFFF),
+          -INT64_C(0x80000000), -INT64_C(0x80000001), -(INT64_C(1) << 40)}) {
+      motors[0].commanded = 0;
+      motors[0].trajectory = step;
+      desired_position_servo(0);
+      EXPECT_EQ(motors[0].desired_step, std::max<std::int64_t>(INT32_MIN, std::min<std::int64_t>(step, INT32_MAX)))
+          << mode << ", " << step;
+      EXPECT_EQ(motors[0].commanded, step);
+    }
+    motors[0].commanded = motors[0].trajectory = 0;
+  }
 }
 
 // Ixx07/Ixx08 counts a count of the master.

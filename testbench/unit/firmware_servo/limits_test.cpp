@@ -2,6 +2,10 @@
 // position (motion:6.2), in jogs, programs, open loops.
 #include "testbench/unit/firmware_servo/protection_rig.h"
 
+extern "C" {
+#include "firmware/motion/jog.h"
+}
+
 namespace brick {
 namespace {
 
@@ -80,6 +84,27 @@ TEST_F(MotionLimits, SoftwareLimitsLookAtTheActualPosition) {
   counts(1, 100);
   servo(3);
   EXPECT_TRUE(status1(1, 21));
+}
+
+// motion:1.4: into a limit nothing is taken; what leads out of it is, and what leads nowhere.
+TEST_F(MotionLimits, OnlyWhatLeadsIntoALimitIsNotTaken) {
+  const struct {
+    const char* line;
+    int way;
+  } jogs[] = {{"I122=32 #1J+", 1},  {"I122=32 #1J-", -1}, {"I122=0 #1J+", 0}, {"I122=0 #1J-", 0},
+              {"I122=32 #1J=1", 1}, {"#1J=-1", -1},       {"#1J=0", 0}};
+  for (const int side : {0, 1, -1})
+    for (const auto& jog : jogs) {
+      motor_kill(0);
+      counts(1, 0);
+      motors[0].actual = motors[0].trajectory = 0;
+      flags(1, side > 0 ? kPositive : side < 0 ? kNegative : 0);
+      ASSERT_TRUE(motor_close(0));
+      servo(3);
+      ASSERT_EQ(motors[0].trajectory, 0);
+      EXPECT_EQ(c_.line(jog.line), "");
+      EXPECT_EQ(jog_is_moving(0), side == 0 || jog.way != side) << jog.line << " at " << side;
+    }
 }
 
 // A motor that stands in a limit is not stopped, nor one that moves out of it.

@@ -129,6 +129,21 @@ TEST_F(PositionLoop, IntegrationLimit) {
   EXPECT_EQ(output_, 0);
 }
 
+// motion:1.1/10: a limit beyond 2^39 units is that, and the integral comes to it.
+TEST_F(PositionLoop, TheIntegralHasAnEndOfItsOwn) {
+  c_.line("I108=8388607 I109=8388607 I130=0 I131=0 I132=0 I133=8388607 I134=0 I163=8388607 I167=8388607");
+  for (const std::int64_t sign : {1, -1}) {
+    close(0, 0);
+    motors[0].trajectory = sign * (INT64_C(1) << 40);
+    for (int n = 0; n < 200; ++n) {
+      desired_position_servo(0);
+      position_loop_servo(0);
+    }
+    EXPECT_EQ(position_loop_integral(0), sign * (INT64_C(1) << 39));
+    EXPECT_TRUE(position_loop_is_limited(0));
+  }
+}
+
 TEST_F(PositionLoop, TheIntegralStandsWhileTheOutputIsAtItsLimit) {
   c_.line("I130=100000 I131=0 I132=0 I133=1000000 I134=0 I169=1000");
   close(0, 0);

@@ -41,9 +41,12 @@ TEST_F(Protection, WhatMayNotClose) {
   EXPECT_TRUE(motor_close(0));
   motor_kill(0);
   c_.line("I101=1 M148->Y:$C0,8 M148=1");
+  motors[0].found.fatal_error = true;
   EXPECT_FALSE(motor_close(0)) << "no phase reference";
+  EXPECT_TRUE(motors[0].found.fatal_error) << "nor is it forgotten why the loop was opened";
   c_.line("M148=0");
   EXPECT_TRUE(motor_close(0));
+  EXPECT_FALSE(motors[0].found.fatal_error);
 }
 
 TEST_F(Protection, EnableGoesWithItsFlagWord) {
@@ -317,6 +320,22 @@ TEST_F(Protection, ForegroundInPosition) {
   EXPECT_FALSE(status2(1, 13));
 }
 
+// In each servo interrupt, however seldom the real-time interrupt comes.
+TEST_F(Protection, ForegroundInPositionKnowsNoTurns) {
+  c_.line("I128=160 I13=1 I8=255");
+  protection_pass();
+  ASSERT_TRUE(motor_close(0));
+  servo(1);
+  for (int n = 0; n < 4; ++n) {
+    counts(1, 10);
+    servo(1);
+    EXPECT_FALSE(motors[0].found.foreground_in_position) << n;
+    counts(1, 9.9);
+    servo(1);
+    EXPECT_TRUE(motors[0].found.foreground_in_position) << n;
+  }
+}
+
 TEST_F(Protection, NothingIsControlledWithoutClocks) {
   run({"TM1000 X100", "X200"});
   servo(6);
@@ -504,6 +523,29 @@ TEST_F(Protection, IntegratedError) {
   servo(150);
   EXPECT_EQ(word(1, 6) & 0x44u, 0x44u);
   EXPECT_EQ(loop(1), LOOP_KILLED);
+}
+
+// motion:6.1: what trips a motor takes its in-position bit away in the same pass, however wide Ixx28 is.
+TEST_F(Protection, ATripEndsInPosition) {
+  const std::function<void()> causes[] = {[] { counts(1, 150); }, [] { flags(1, kFault); },
+                                          [this] { c_.line("I163=-160"); }};
+  for (const auto& cause : causes) {
+    counts(1, 0);
+    flags(1, 0);
+    c_.line("I111=1600 I128=32767 I188=0 I130=1000 I131=0 I133=8388607 I134=0 I163=160 I169=32767");
+    servo();
+    ASSERT_TRUE(motor_close(0));
+    servo();
+    counts(1, 1);
+    servo(100);
+    protection_pass();
+    ASSERT_TRUE(motors[0].found.in_position);
+    cause();
+    servo();
+    protection_pass();
+    EXPECT_EQ(loop(1), LOOP_KILLED);
+    EXPECT_FALSE(motors[0].found.in_position);
+  }
 }
 
 // motion:6.3: Ixx69 = 32767, Ixx57 = 10589 for 60 s at 2250 Hz is Ixx58 = 120,894.
