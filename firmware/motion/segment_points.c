@@ -125,9 +125,8 @@ static uint32_t override_of(uint32_t cs) {
   const double isx16 = i_variable_read(i_cs_real(cs, ISX16_SEGMENT_OVERRIDE_SLEW));
   const bool at_once = !(isx16 > 0.0) || isx16 >= 2.0;
   slice_pause();
-  const uint32_t change = at_once ? 2u * OVERRIDE_ONE : (uint32_t)math_to_integer(isx16 * (double)OVERRIDE_ONE);
-  if (wanted > present) return wanted - present <= change ? wanted : present + change;
-  return present - wanted <= change ? wanted : present - change;
+  const int64_t change = at_once ? INT64_C(2) * OVERRIDE_ONE : math_to_integer(isx16 * (double)OVERRIDE_ONE);
+  return (uint32_t)(present + fixed_within_long((int64_t)wanted - present, change));
 }
 
 /* Program time of the next point, `override` on from the last one. */
