@@ -27,6 +27,22 @@ TEST_F(Lookahead, ALineIsLimited) {
   EXPECT_LE(end, 1.1 * (2000 + 50));
 }
 
+// Ixx16, Ixx17 of 0 or less are no limits.
+TEST_F(Lookahead, WhatIsNotAboveZeroIsNoLimit) {
+  for (const char* limits : {"I116=0 I117=0", "I116=-50 I117=0", "I116=0 I117=-1", "I116=-50 I117=-1"}) {
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host(std::string("I5113=5 I5120=40 ") + limits), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+    store({"TM100 TA20 TS0", "X10"});
+    double end = 0;
+    const auto found = extremes(1, &end);
+    EXPECT_EQ(motors[0].trajectory, 10000 * 3072LL);
+    EXPECT_NEAR(end, 120 + 10, kTickMs) << limits;
+    EXPECT_NEAR(found[0].velocity, 100, 0.1) << limits;
+  }
+}
+
 TEST_F(Lookahead, CornersAreSlowedDown) {
   fit({"1000X", "1000Y"});
   ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I216=50 I217=0.5"), "");

@@ -332,4 +332,50 @@ TEST_F(OwnPath, PositionAndSpeedAtEachMoment) {
   }
 }
 
+// motion:4.1, at any scale: from `from` to `speed`, on for `cruise`, to rest, all of it the distance, and no faster
+// than it may be. Where it could be faster it goes on at the top, or keeps the speed that it has.
+TEST(SpeedPlan, CoversItsDistance) {
+  std::mt19937_64 random(brick::random_seed(2));
+  const auto real = [&random](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  unsigned peaks = 0, tops = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double scale = std::exp(real(-3, 12)), s = i % 3 == 0 ? 0 : real(0, 30),
+                 shortest = i % 2 == 0 ? 0 : real(0, 80);
+    const speed_limits l = speed_limits_make(scale * real(0.01, 1), shortest, s);
+    EXPECT_EQ(l.shortest, std::max({shortest, 2 * s, 1.0}));
+    const double from = i % 4 == 0 ? 0 : scale * real(-10, 10), top = scale * real(0.1, 10);
+    const double distance = scale * std::exp(real(2, 12)) * (i % 5 < 2 ? -1 : 1);
+    const auto change = [&](double a, double b) {
+      return a == b ? 0 : (a + b) / 2 * std::max(l.shortest, std::abs(b - a) / l.acceleration + s);
+    };
+    const double rest = distance - change(from, 0);
+    if (std::abs(rest) < 1) continue;
+    const speed_plan p = speed_plan_to(&l, from, distance, top);
+    const double made = change(from, p.speed) + p.speed * p.cruise + change(p.speed, 0);
+    ASSERT_NEAR(made, distance, std::abs(distance) * 1e-9 + scale * 1e-6) << i;
+    ASSERT_GE(p.cruise, 0) << i;
+    const double ahead = rest > 0 ? from : -from, speed = rest > 0 ? p.speed : -p.speed;
+    ASSERT_GT(speed, 0) << i;
+    ASSERT_LE(speed, std::max(top, ahead) * (1 + 1e-12)) << i;
+    if (p.cruise == 0) {
+      ++peaks;
+      ASSERT_GE(speed, std::max(ahead, 0.0) * (1 - 1e-9)) << i << ": not slower, and then faster again";
+    } else if (speed != ahead) {
+      ++tops;
+      ASSERT_EQ(speed, top) << i;
+    } else if (ahead < top) {
+      ASSERT_LT(std::abs(rest), ahead * l.shortest * (1 + 1e-9)) << i << ": too near to become faster";
+    }
+  }
+  EXPECT_GT(peaks, 500u);
+  EXPECT_GT(tops, 500u);
+  const speed_limits l = speed_limits_make(1, 5, 0);
+  EXPECT_EQ(speed_plan_to(&l, 0, 0.49, 10).speed, 0);
+  EXPECT_GT(speed_plan_to(&l, 0, 0.5, 10).speed, 0);
+  EXPECT_LT(speed_plan_to(&l, 0, -0.5, 10).speed, 0);
+  EXPECT_EQ(speed_plan_to(&l, 0, 100, 0).speed, 0);
+}
+
 }  // namespace

@@ -22,6 +22,31 @@ TEST_F(SegmentOverride, IsOfTheSpeed) {
   EXPECT_EQ(motors[0].trajectory, 3000 * 3072);
 }
 
+// Isx16: so much of it a segment, both ways; 0, and 2 or more, at once.
+TEST_F(SegmentOverride, GoesByIsx16ASegment) {
+  const std::uint32_t one = SEGMENT_OVERRIDE_ONE;
+  const struct {
+    const char *isx15, *isx16;
+    double present, next;
+  } cases[] = {{"0.5", "0.25", 1, 1.25},  {"0.5", "0.25", 1.25, 1.5}, {"0.5", "0.25", 1.375, 1.5}, {"0.5", "0", 1, 1.5},
+               {"-0.5", "0.25", 1, 0.75}, {"-0.5", "0.25", 0.6, 0.5}, {"-1", "1.5", 2, 0.5},       {"1", "2", 0, 2},
+               {"-1", "7", 2, 0},         {"1", "-1", 0, 2},          {"-3", "1", 0.5, 0},         {"3", "1.5", 0, 1.5},
+               {"0", "0.5", 2, 1.5},      {"0", "0.5", 0, 0.5},       {"0", "0.5", 1, 1}};
+  for (const auto& c : cases) {
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5"), "");
+    store({"TM1000 TA20 TS0", "X3"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(60);
+    ASSERT_EQ(host(std::string("I5115=") + c.isx15 + " I5116=" + c.isx16), "");
+    cs().segment_override = static_cast<std::uint32_t>(c.present * one);
+    const std::uint32_t before = cs().segment_override;
+    for (int i = 0; i < 100 && cs().segment_override == before; ++i) platform::servo_ticks(1);
+    EXPECT_EQ(cs().segment_override, static_cast<std::uint32_t>(c.next * one)) << c.isx15 << " by " << c.isx16;
+  }
+}
+
 // Neither the override nor the state of a path outlasts a reset, saved or not; Isx16 does.
 TEST_F(SegmentOverride, AndStateAreNotSaved) {
   ASSERT_EQ(host("I5115=-0.5 I5116=0.25 I5120=40 I5121=4 I6615=0.5 SAVE"), "");

@@ -89,5 +89,16 @@ TEST_F(TimeBase, TheTableComesFirst) {
   EXPECT_EQ(c_.line("RX$2102"), "10000");
 }
 
+// There are sixteen systems: behind the words of the last a source is what lies in memory.
+TEST_F(TimeBase, WordsBehindTheLastSystemAreMemory) {
+  c_.line("I5194=8388607 I6693=0 I5193=$2F00");
+  EXPECT_EQ(after(2), 3713991) << "that of &16";
+  for (const std::uint32_t address : {0x3000u, 0x3002u}) {
+    *hal_x(address) = 1000 + address;
+    c_.line("I5193=" + std::to_string(address));
+    EXPECT_EQ(after(1), 1000 + static_cast<long>(address));
+  }
+}
+
 }  // namespace
 }  // namespace brick
