@@ -44,8 +44,9 @@ static double peak_speed(const struct speed_limits* l, double from, double dista
   slice_pause();
   const double slow = l->acceleration * (l->shortest - l->s_curve); /* changes up to it last `shortest` */
   slice_pause();
-  const bool second_slow = distance <= shortest_distance(l, from, slow);
-  const bool first_slow = distance <= shortest_distance(l, from, from + slow);
+  const double begin = from > 0.0 ? from : 0.0, first = from + slow > begin ? from + slow : begin;
+  const bool second_slow = slow <= begin ? false : distance <= shortest_distance(l, from, slow);
+  const bool first_slow = first <= begin ? false : distance <= shortest_distance(l, from, first);
   slice_pause();
   const double time = (first_slow ? l->shortest : l->s_curve) / 2.0;
   const double linear = time + (second_slow ? l->shortest : l->s_curve) / 2.0;
