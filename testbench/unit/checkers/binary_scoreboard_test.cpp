@@ -14,7 +14,7 @@ namespace {
 class Story {
  public:
   BinaryScoreboard board;
-  Tick first_low = 2 * kUs;
+  Tick first_low = 2 * kUs, between = 5 * kUs;
   bool second_rises = false, falls_twice = false, in_real_time = false, before_the_index = false, only_one = false;
   unsigned first_index = 2, ring = 8, second_status = 0;
   std::string told = "X1";
@@ -26,7 +26,7 @@ class Story {
     board.line(0, told, 1, 2);
     if (!before_the_index) board.advanced(0, 10);
     fall(100 * kUs, first_low);
-    if (falls_twice) fall(100 * kUs + first_low + 5 * kUs, 2 * kUs);
+    if (falls_twice) fall(100 * kUs + first_low + between, 2 * kUs);
     board.pmac_index(0, first_index, in_real_time, 120 * kUs);
     if (only_one) {
       board.settled(180 * kUs);
@@ -72,6 +72,7 @@ TEST(BinaryScoreboardTest, FindsEachRuleBroken) {
       {"BREQ low for", [](Story& s) { s.first_low = kUs / 2; }},
       {"BREQ low for", [](Story& s) { s.first_low = 51 * kUs; }},
       {"BREQ fell 2 times", [](Story& s) { s.falls_twice = true; }},
+      {"BREQ high for", [](Story& s) { s.falls_twice = true, s.between = kUs / 2; }},
       {"BREQ high with 2 lines", [](Story& s) { s.second_rises = true; }},
       {"settled with 1 lines: BREQ 0, expected 1", [](Story& s) { s.first_low = 0, s.only_one = true; }},
       {"error 5, expected 0", [](Story& s) { s.second_status = 0x8005; }},
@@ -83,6 +84,43 @@ TEST(BinaryScoreboardTest, FindsEachRuleBroken) {
     c.breaks(story);
     EXPECT_NE(story.run().find(c.says), std::string::npos) << c.says;
   }
+}
+
+// host-bus:7.5: behind an error nothing is copied until the host has set the indices to 0; then it begins anew.
+TEST(BinaryScoreboardTest, BeginsAnewBehindAnError) {
+  BinaryScoreboard board;
+  board.defined(3, 8);
+  board.line(3, "X1", 1, 2);
+  board.advanced(3, 10);
+  EXPECT_FALSE(board.all_copied());
+  board.expect_error(3, 5);
+  board.status(3, 0x8005, 20);
+  EXPECT_TRUE(board.has_error(3));
+  EXPECT_TRUE(board.all_copied()) << "that line never is";
+  board.recovered(3);
+  EXPECT_FALSE(board.has_error(3));
+  EXPECT_TRUE(board.violations().empty());
+  board.status(3, 0x8005, 30);
+  ASSERT_EQ(board.violations().size(), 1u) << "the error is over";
+  EXPECT_NE(board.violations()[0].find("error 5, expected 0"), std::string::npos);
+  board.pmac_index(3, 2, false, 40);
+  ASSERT_EQ(board.violations().size(), 2u) << "and the line is forgotten";
+  EXPECT_NE(board.violations()[1].find("no line waits"), std::string::npos);
+}
+
+// CLOSE: what is not copied never is, and BREQ is anybody's until a system is shown.
+TEST(BinaryScoreboardTest, ForgetsWhatACloseLeaves) {
+  BinaryScoreboard board;
+  board.defined(0, 8);
+  board.shown(0, false);
+  ASSERT_EQ(board.violations().size(), 1u) << "an empty ring is not full";
+  board.line(0, "X1", 1, 2);
+  board.closed();
+  EXPECT_TRUE(board.all_copied());
+  board.edge(10, true);
+  board.edge(11, false);
+  board.settled(100 * kUs);
+  EXPECT_EQ(board.violations().size(), 1u);
 }
 
 }  // namespace

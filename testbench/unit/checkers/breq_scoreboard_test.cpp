@@ -179,5 +179,69 @@ TEST_F(BreqScoreboardTest, EdgeWithoutCauseIsFound) {
   EXPECT_EQ(violations(), 1u);
 }
 
+TEST_F(BreqScoreboardTest, APulseThatIsTooShortIsFound) {
+  start(5, 10);
+  board.line_sent(now += 10 * kUs);
+  board.edge(now += 5 * kUs, false);
+  board.edge(now += kUs / 2, true);
+  EXPECT_EQ(violations(), 1u);
+  EXPECT_NE(first().find("T_PULSE"), std::string::npos) << first();
+}
+
+TEST_F(BreqScoreboardTest, ARiseThatNothingExplainsIsFound) {
+  start(5, 10);
+  board.edge(now += kUs, true);
+  EXPECT_EQ(violations(), 1u);
+  EXPECT_NE(first().find("Full is 0"), std::string::npos) << first();
+}
+
+// Both at I16 - 1 lines: the pin that has not risen is found by PR alone.
+TEST_F(BreqScoreboardTest, BelowI16AndStillLowIsFound) {
+  start(5, 10);
+  for (unsigned n = 1; n <= 10; ++n) line(n == 10);
+  board.run(0, now);
+  now += 6 * kLine;
+  board.lines_ahead(now, now + 50 * kUs, 5);
+  EXPECT_EQ(violations(), 0u) << first();
+  now += kLine;
+  board.lines_ahead(now, now + 50 * kUs, 4);
+  EXPECT_EQ(violations(), 1u);
+  EXPECT_NE(first().find("rule 4"), std::string::npos) << first();
+}
+
+// CLEAR empties a buffer, and a program that stands takes nothing.
+TEST_F(BreqScoreboardTest, AnEmptiedBufferHasNoLinesAndAHaltedOneLosesNone) {
+  start(5, 10);
+  for (unsigned n = 1; n <= 10; ++n) line(n == 10);
+  board.run(0, now);
+  now += 3 * kLine;
+  board.halt(0, now);
+  now += 20 * kLine;
+  board.lines_ahead(now, now + 50 * kUs, 6);  // three, and one more that may have been taken at once
+  EXPECT_EQ(violations(), 0u) << first();
+  now += 20 * kLine;
+  board.lines_ahead(now, now + 50 * kUs, 5);
+  EXPECT_EQ(violations(), 1u) << "nobody has taken one";
+  board.empty(0);
+  board.select(0, now);
+  board.edge(now += kUs, true);
+  settle();
+  ask(0, false);
+  EXPECT_EQ(violations(), 1u);
+}
+
+TEST_F(BreqScoreboardTest, AReadOfThePinThatShowsAnotherLevelIsFound) {
+  start(5, 10);
+  board.signal(now, now + kUs, true, "SIG");
+  board.edge(now += 10 * kUs, true);
+  const std::size_t before = violations();
+  board.signal(now - kUs, now + kUs, false, "SIG");  // an edge while it was asked
+  EXPECT_EQ(violations(), before);
+  now += 10 * kUs;
+  board.signal(now, now + kUs, false, "SIG");
+  EXPECT_EQ(violations(), before + 1);
+  EXPECT_NE(board.violations().back().find("SIG shows BREQ 0; expected: 1"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace brick

@@ -161,5 +161,69 @@ TEST(CompareRule, ToggleWhenAPositionIsLeft) {
   EXPECT_EQ(at, (std::vector<std::uint32_t>{3000, 1010}));
 }
 
+// servo-ic:5.4, mode 8: each pulse of the own PFM output counts with the next SCLK edge, whatever the lines do.
+TEST_F(ChannelScoreboardRules, CountsItsOwnPulses) {
+  board_.decoder.mode = 8;
+  const std::int32_t before = board_.decoder.counter();
+  for (const int direction : {1, 1, -1}) {
+    board_.pulse(now_, direction);
+    put(kA);
+  }
+  EXPECT_EQ(board_.decoder.counter(), before + 1);
+  EXPECT_TRUE(board_.decoder.down());
+  board_.decoder.mode = 9;
+  board_.pulse(now_, 1);
+  put(0);
+  EXPECT_EQ(board_.decoder.counter(), before + 1) << "no other mode has them";
+}
+
+// servo-ic:5.4: control bit 10 holds the counter at 0, without an error.
+TEST_F(ChannelScoreboardRules, AHeldCounterIsZero) {
+  board_.decoder.mode = 7;
+  cycle_up();
+  ASSERT_NE(board_.decoder.counter(), 0);
+  board_.decoder.hold = true;
+  put(kA | kB);  // both at once
+  EXPECT_EQ(board_.decoder.counter(), 0);
+  EXPECT_FALSE(board_.decoder.error());
+}
+
+// servo-ic:5.9: codes 0 and 4 (by software), 3 (index and flag).
+TEST(CaptureRule, BySoftwareAndByBoth) {
+  Capture software(0);
+  software.code = 0;
+  EXPECT_FALSE(software.step(0, 1));
+  software.code = 4;
+  EXPECT_TRUE(software.step(0, 2));
+  EXPECT_EQ(software.read(), 2u);
+  EXPECT_FALSE(software.step(0, 3)) << "it stands: the condition has to become true anew";
+  Capture both(0);
+  both.code = 3;
+  std::uint32_t position = 0;
+  for (const auto& [level, captures] :
+       {std::pair<unsigned, bool>{kC, false}, {0, false}, {kHome, false}, {kHome | kC, true}})
+    EXPECT_EQ(both.step(static_cast<std::uint16_t>(level), ++position), captures) << level;
+  EXPECT_EQ(both.position(), 4u);
+}
+
+// servo-ic:5.8/3: the index line has four signals, one by each state of A and B: C, U, V and W of the status word.
+TEST(CaptureRule, TheIndexLineIsTakenApart) {
+  constexpr unsigned kLines = 1u << kU | 1u << kV | 1u << kW;
+  const std::pair<unsigned, unsigned> states[] = {{kA | kB, kC}, {+kA, 1u << kU}, {0, 1u << kV}, {+kB, 1u << kW}};
+  for (const auto& [high_in, shows] : states) {
+    Capture capture(0);
+    capture.gate = 2;
+    for (const auto& [state, unused] : states) {
+      EXPECT_TRUE(capture.incomplete());
+      capture.step(static_cast<std::uint16_t>(state | (state == high_in ? +kC : 0)), 0);
+    }
+    EXPECT_FALSE(capture.incomplete());
+    const auto level = static_cast<std::uint16_t>(kLines | kHome | kB | (high_in == kB ? +kC : 0));
+    EXPECT_EQ(capture.shown(level), kHome | kB | shows) << "the pins U, V and W are none of it";
+    capture.gate = 0;
+    EXPECT_EQ(capture.shown(level), level);
+  }
+}
+
 }  // namespace
 }  // namespace brick

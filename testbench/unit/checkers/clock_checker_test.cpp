@@ -383,8 +383,34 @@ TEST(ShortestLevels, EachLevelAtItsBoundAndATickLess) {
       EXPECT_EQ(shortest.level(servo, high).length, bound - less);
     }
     EXPECT_EQ(shortest.kept(1), less == 0);
+    if (less == 1) {
+      EXPECT_EQ(shortest.text().substr(0, 87),
+                "PHASE low 6528 ticks (6529 at least, 1 seen), PHASE high 6527 ticks (6528 at least, 2 s");
+    }
     EXPECT_FALSE(shortest.kept(2)) << "SERVO low was seen once";
   }
+}
+
+// The first high level of the new source may be as long as those of the old one: that it is the new one's is known from
+// the low level behind it.
+TEST(ClockChecker, KnowsTheNewSourceByItsFirstLowLevel) {
+  constexpr ClockSetting kShort{5000, 0, 1};
+  Wave wave, next;
+  const Tick taken = wave.run(0, kDefault, 5, 3);  // SERVO is high from fall 4 on and would be low from fall 7 on
+  const Tick last = next.run(taken + kDefault.high() - kShort.high(), kShort, 20, 2);
+  next.phase.erase(next.phase.begin());
+  next.phase[taken] = true;
+  wave.phase.insert(next.phase.begin(), next.phase.end());
+  wave.servo.insert(next.servo.begin(), next.servo.end());
+  ClockChecker checker;
+  checker.run(0, kDefault);
+  play(checker, wave, 0, taken - 100);
+  checker.move(taken - 100, kShort);
+  play(checker, wave, taken - 99, last - 5 * kShort.phase());
+  checker.run(last - 5 * kShort.phase(), kShort);
+  play(checker, wave, last - 5 * kShort.phase() + 1, wave.phase.rbegin()->first);
+  EXPECT_THAT(kinds(checker), IsEmpty()) << checker.violations()[0].text;
+  EXPECT_EQ(checker.counts().odd_highs, 1u);
 }
 
 }  // namespace

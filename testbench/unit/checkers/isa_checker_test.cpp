@@ -221,5 +221,20 @@ TEST_F(IsaCheckerTest, CyclesAreCountedByKindWidthAndIochrdy) {
   EXPECT_EQ(checker_.cycles(IsaChecker::kMemoryWrite, 0, 0), 1u);
 }
 
+// As reports name them: of the host bus, and of Port A.
+TEST(TimingText, TimesAndPlaces) {
+  EXPECT_EQ(timing_text(12'345'678), "12.346 ns");
+  TimingPlace place;
+  place.address = 0x300;
+  place.space = 'I';
+  EXPECT_EQ(timing_address(place), "I/O 0x300");
+  place.address = 0xD0002;
+  place.space = 'M';
+  EXPECT_EQ(timing_address(place), "memory 0x0D0002");
+  place.address = 0x78005;
+  place.space = 'X';
+  EXPECT_EQ(timing_address(place), "X:$078005");
+}
+
 }  // namespace
 }  // namespace brick

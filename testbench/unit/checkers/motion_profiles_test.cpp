@@ -97,5 +97,55 @@ TEST(PositionLoopModel, DeadbandAndFriction) {
   EXPECT_DOUBLE_EQ(inside.output(-3, 0), -12 - 5);  // 1 count beyond the band, going down
 }
 
+// From 20 to -20 at 4 counts/ms^2 with 5 ms of rounding: 40/4 + 5 = 15 ms, which end where they began.
+TEST(JogProfile, ChangesItsSpeedFromWhereItIs) {
+  const VelocityProfile p = jog_to_speed(10, 20, -20, {4, 0, 5, 32});
+  EXPECT_NEAR(p.end(), 15, 1e-9);
+  EXPECT_NEAR(p.velocity(0), 20, 1e-9);
+  EXPECT_NEAR(p.velocity(7.5), 0, 1e-9);
+  EXPECT_NEAR(p.velocity(15), -20, 1e-9);
+  EXPECT_NEAR(p.position(15), 10, 1e-9);
+  EXPECT_NEAR(p.position(25), 10 - 200, 1e-9);
+}
+
+TEST(JogProfile, GoesOnToAnotherTarget) {
+  for (const double to : {1000.0, -1000.0}) {
+    const VelocityProfile p = jog_on(3, 10, to, {4, 0, 5, 32});
+    EXPECT_NEAR(p.velocity(0), 10, 1e-9);
+    EXPECT_NEAR(p.velocity(p.end() / 2), to > 0 ? 32 : -32, 1e-9);
+    EXPECT_NEAR(p.velocity(p.end()), 0, 1e-9);
+    EXPECT_NEAR(p.position(p.end()), to, 1e-9);
+  }
+}
+
+TEST(JogProfile, TellsWhenItIsWhere) {
+  for (const double to : {800.0, -800.0}) {
+    const VelocityProfile p = jog_profile(0, to, {4, 0, 5, 32});
+    EXPECT_NEAR(p.time_at(to / 2, 0, p.end()), p.end() / 2, 1e-9) << "it is symmetrical";
+    EXPECT_NEAR(p.position(p.time_at(to / 10, 0, p.end())), to / 10, 1e-9);
+  }
+}
+
+TEST(CubicPath, TellsWhenItIsWhere) {
+  const CubicPath p = pvt_path(10, {{110, 5, 20}, {-90, 0, 40}});
+  EXPECT_NEAR(p.time_at(110, 0, 20), 20, 1e-9);
+  EXPECT_NEAR(p.position(p.time_at(50, 0, 20)), 50, 1e-9);
+  EXPECT_NEAR(p.position(p.time_at(0, 30, 60)), 0, 1e-9) << "on the way down";
+}
+
+// 100 bits more or less than a clip at 120: what was measured says whether the integrator stood.
+TEST(PositionLoopModel, AClipThatIsTooCloseToCallIsTheMeasuredOne) {
+  LoopGains g;
+  g.p = 65536, g.d = g.vff = 0, g.i = 8388608, g.integrate_at_rest = false, g.limit = 240.5, g.bias = -7;
+  for (const double sign : {1.0, -1.0})
+    for (const auto& [measured, integrates] : {std::pair{240.0, true}, {241.0, false}, {100.0, true}}) {
+      PositionLoopModel p(g, 10 * sign, 0);
+      EXPECT_DOUBLE_EQ(p.output(10 * sign, 0), 240 * sign - 7) << "just not clipped";
+      p.follow(measured * sign - 7);
+      p.output(10 * sign, 0);
+      EXPECT_DOUBLE_EQ(p.integrator(), (integrates ? 20 : 10) * sign) << measured;
+    }
+}
+
 }  // namespace
 }  // namespace brick

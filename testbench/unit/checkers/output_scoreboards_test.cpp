@@ -63,6 +63,8 @@ TEST(PwmScoreboard, OneTickIsADifference) {
     seen.erase(seen.begin() + static_cast<std::ptrdiff_t>(i));
     EXPECT_NE(pwm_difference(seen, expected, 16, 900), "") << i;
   }
+  std::vector<PwmLevel> seen{{0, 3}};
+  EXPECT_EQ(pwm_difference(seen, {{0, 2}}, 5, 900), "tick 5: both on, expected lower on") << "from the beginning";
 }
 
 // servo-ic:14/6: $010000 is a pulse every 256 PFM_CLK, 15 wide.
@@ -92,6 +94,14 @@ TEST(PfmScoreboard, PulseEach256Clocks) {
     wrong[i].pins ^= 2;
     EXPECT_NE(PfmScoreboard{}.judge(rule, commands, wrong, 256 * 12, 40'000), "") << i;
   }
+  auto wrong = seen;
+  wrong.pop_back();
+  EXPECT_NE(PfmScoreboard{}.judge(rule, commands, wrong, 256 * 12, 40'000).find("no change, expected pulse 0"),
+            std::string::npos);
+  wrong = seen;
+  wrong.push_back({39'000, 1});
+  EXPECT_NE(PfmScoreboard{}.judge(rule, commands, wrong, 256 * 12, 40'000).find("at tick 39000, expected no change"),
+            std::string::npos);
 }
 
 TEST(PfmScoreboard, NoMoreThanAQuarterOfTheClock) {
