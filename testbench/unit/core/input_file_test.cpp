@@ -66,5 +66,13 @@ TEST(InputFile, ThatCannotBeReadSaysSo) {
   }
 }
 
+TEST(InputFile, ThatIsRegularIsNeeded) {
+  const std::string path = path_of("regular");
+  std::ofstream(path) << "x";
+  EXPECT_NO_THROW(need_regular_file(path, "a tale"));
+  std::remove(path.c_str());
+  EXPECT_THROW(need_regular_file(path, "a tale"), UsageError);
+}
+
 }  // namespace
 }  // namespace brick

@@ -2,7 +2,9 @@
 #include "systemc/core/signals.h"
 
 #include <stdexcept>
+#include <vector>
 
+#include "systemc/core/trace.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
@@ -32,6 +34,28 @@ TEST(Signals, RefuseASecondSignalOfTheSameName) {
   Signals s;
   s.add("bus.addr", 19, Radix::kHex);
   EXPECT_THROW(s.add("bus.addr", 19, Radix::kHex), std::logic_error);
+}
+
+class TimesOfFlushes : public TraceWriter {
+ public:
+  void declare(Signals::Id, const Signals::Info&, Signals::Id) override {}
+  void record(Signals::Id, TimeFs, std::uint64_t) override {}
+  void record_text(Signals::Id, TimeFs, const std::string&) override {}
+  void flush_until(TimeFs time) override { times.push_back(time); }
+  void close() override {}
+  std::vector<TimeFs> times;
+};
+
+TEST(Signals, TellTheWaveformHowFarTheyAre) {
+  Signals s;
+  TimesOfFlushes trace;
+  s.flush_until(1);
+  s.attach(&trace);
+  s.flush_until(2);
+  s.flush_until(5);
+  s.attach(nullptr);
+  s.flush_until(6);
+  EXPECT_EQ(trace.times, (std::vector<TimeFs>{2, 5}));
 }
 
 }  // namespace

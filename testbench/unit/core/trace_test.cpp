@@ -260,6 +260,29 @@ TEST_F(Trace, AFileThatTakesNoMoreEndsTheWaveformAlone) {
   std::remove(file.c_str());
 }
 
+// Nobody closes it, as behind an error: what cannot be written then is said, and nothing is thrown.
+TEST_F(Trace, AWriterThatIsLeftSaysThatThereWasNoRoom) {
+  for (const std::string ending : {".fst", ".vcd"}) {
+    const std::string file = path(ending);
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    auto writer = TraceWriter::open(file);
+    signals.attach(writer.get());
+    for (unsigned i = 1; i < 1000; ++i) signals.set(addr, i * kPs, i * 7 % 16);
+    signals.attach(nullptr);
+    ::testing::internal::CaptureStderr();
+    rlimit small = before;
+    small.rlim_cur = 400;
+    setrlimit(RLIMIT_FSIZE, &small);
+    writer.reset();
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_THAT(::testing::internal::GetCapturedStderr(), ::testing::StartsWith(file + ": cannot write the waveform"));
+    std::signal(SIGXFSZ, handler);
+    std::remove(file.c_str());
+  }
+}
+
 TEST(TraceOpen, SaysWhatIsWrongWithTheFileName) {
   EXPECT_THROW(
       {
