@@ -51,6 +51,13 @@ TEST_F(KinematicStops, AProgramThatNeverEnds) {
   stops_with(RUN_TIME_KINEMATIC);
 }
 
+TEST_F(KinematicStops, AWordThatIsNoStatement) {
+  fit_arm();
+  ASSERT_EQ(host("I5113=10"), "");
+  user_memory_write(fixed_program_find(FIXED_INVERSE, 0)->base, WORD_START_OF_LINE | 8ull << 43 | 1ull << 40);
+  stops_with(RUN_TIME_STATEMENT);
+}
+
 TEST_F(KinematicStops, InTheMiddleOfAPath) {
   fit_arm();
   Lines late = arm::inverse();

@@ -42,11 +42,15 @@ uint32_t hal_mask_real_time(void) { return hold_off(FAKE_REAL_TIME); }
 uint32_t hal_mask_servo(void) { return hold_off(FAKE_SERVO); }
 uint32_t hal_mask_all(void) { return hold_off(FAKE_HOST); }
 
+static void (*on_unmask)(void);
+void fake_hal_on_unmask(void (*action)(void)) { on_unmask = action; }
+
 void hal_unmask(uint32_t state) {
   fake_interrupts_mend();
   mask = (enum fake_task)state;
   const uint32_t held = (uint32_t)hal_long_cycles() - masked_since;
   if (mask == FAKE_BACKGROUND && held > longest_mask) longest_mask = held;
+  if (mask == FAKE_BACKGROUND && level == FAKE_BACKGROUND && on_unmask != NULL) on_unmask();
 }
 
 void hal_interrupts_off(void) { real_time = interrupts_on = false; }

@@ -22,6 +22,9 @@ void fake_task_run_real_time(void);       /* the same of the real-time task; wha
 void fake_tasks_servo_waits(bool waits);  /* whenever a servo task ends, the next is due already */
 void fake_tasks_ignore_masks(bool ignored); /* hal_mask_... hold nobody off: whoever relies on them must fail */
 
+/* Called whenever the background holds nobody off any more, in place of an interrupt that has waited. Null: nothing. */
+void fake_hal_on_unmask(void (*action)(void));
+
 bool fake_hal_masked(void);           /* some task is held off */
 uint32_t fake_hal_longest_mask(void); /* longest time that one was, in cycles, since the last call */
 

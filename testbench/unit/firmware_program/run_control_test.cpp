@@ -6,7 +6,9 @@
 #include "testbench/unit/firmware_program/platform.h"
 
 extern "C" {
+#include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 }
 
 namespace {
@@ -362,6 +364,64 @@ TEST_F(RunControl, UndefineAllIsRefusedWhicheverMotorWouldBeLost) {
     EXPECT_EQ(host("UNDEFINE ALL"), "ERR001") << "#" << motor;
     EXPECT_EQ(host("#" + motor + "->"), "5X");
   }
+}
+
+// `happens` at the nth time that a start of &1 lets interrupts come, for each n.
+template <typename Prepare>
+void start_meanwhile(const Prepare& prepare, void (*happens)(), void (*expect)(firmware_error_t error, bool ran)) {
+  static void (*event)();
+  static unsigned left;
+  static bool ran;
+  event = happens;
+  unsigned times = 0;
+  for (bool came = true; came; ++times) {
+    platform::power_up();
+    ASSERT_NO_FATAL_FAILURE(prepare());
+    left = times + 1;
+    fake_hal_on_unmask([] {
+      if (--left != 0) return;
+      fake_hal_on_unmask(nullptr);
+      ran = run_is_running(0);
+      event();
+    });
+    const firmware_error_t error = run_start(0, false);
+    fake_hal_on_unmask(nullptr);
+    came = left == 0;
+    if (came) expect(error, ran);
+  }
+  EXPECT_GT(times, 3u) << "nothing has come in between";
+}
+
+// firmware:4.10: the errors of R are those of the moment in which it starts the program.
+TEST_F(RunControl, AStartLooksAtMotorsAtLast) {
+  const auto prepare = [] {
+    ASSERT_EQ(host("&1#1->X"), "");
+    motors[0].loop = LOOP_CLOSED;
+    open();
+    ASSERT_EQ(host("CLOSE"), "");
+  };
+  start_meanwhile(
+      prepare, [] { motors[0].loop = LOOP_KILLED; },
+      [](firmware_error_t error, bool ran) { EXPECT_EQ(error, ran ? ERR_NONE : ERR_OPEN_LOOP); });
+  start_meanwhile(
+      prepare, [] { ASSERT_TRUE(jog_stop_at(0, 1)); },  // as at a limit
+      [](firmware_error_t error, bool ran) { EXPECT_EQ(error, ran ? ERR_NONE : ERR_MOVE_IN_PROGRESS); });
+}
+
+TEST_F(RunControl, AProgramThatEndsDuringItsStartIsNotBegunAnew) {
+  start_meanwhile(
+      [] {
+        ASSERT_EQ(host("OPEN PROG 1 CLEAR P1=P1+1 DWELL100 CLOSE B1R"), "");
+        platform::servo_ticks(30);
+        ASSERT_TRUE(run_is_running(0));
+      },
+      [] { platform::servo_ticks(1000); },
+      [](firmware_error_t error, bool) {
+        EXPECT_EQ(error, ERR_NONE);
+        EXPECT_FALSE(run_is_running(0));
+        platform::servo_ticks(30);
+        EXPECT_EQ(host("P1"), "1");
+      });
 }
 
 }  // namespace

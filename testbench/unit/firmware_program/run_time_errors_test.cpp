@@ -96,4 +96,23 @@ TEST_F(RunTimeErrors, AnAbortWithinOneLeavesNothingToTheNext) {
   EXPECT_GT(within, 1u) << "no abort fell among the words that are skipped";
 }
 
+// firmware:7.10: the line of a rotary buffer goes, though the error is in a program that it calls.
+TEST_F(RunTimeErrors, OneInACalledProgramTakesTheLineThatCalls) {
+  store(7, {"P1=1", "CALL8 P2=2"});
+  store(8, {"P3=3", "CALL99 P4=4"});
+  ASSERT_EQ(host("DEF ROT 100 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("CALL7 P5=5"), "");
+  ASSERT_EQ(host("P6=6"), "");
+  ASSERT_EQ(host("CLOSE R"), "");
+  ASSERT_TRUE(finish());
+  EXPECT_TRUE(error());
+  EXPECT_EQ(number(), "2");
+  EXPECT_EQ(host("P1..6"), "1|0|3|0|0|0");
+  EXPECT_EQ(host("PR"), "1");
+  ASSERT_EQ(host("P1=0 P3=0 R"), "");
+  platform::servo_ticks(9);
+  EXPECT_FALSE(error());
+  EXPECT_EQ(host("P1..6"), "0|0|0|0|0|6") << "no way back into the programs";
+}
+
 }  // namespace

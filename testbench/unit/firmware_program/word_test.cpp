@@ -125,4 +125,20 @@ TEST(ProgramWord, UndefinedCodesAreIllegal) {
   EXPECT_EQ(word_decode(32ull << 30).operation, OP_ILLEGAL);                  // end-of-buffer mark
 }
 
+// The exponent of a short word has six bits with its sign, that of a wide one seven; no text has such a value.
+TEST(ProgramWord, WhatIsTooSmallForAWordIsZero) {
+  EXPECT_TRUE(word_holds_short(std::ldexp(1, -33)));
+  EXPECT_FALSE(word_holds_short(std::ldexp(1, -34)));
+  EXPECT_TRUE(word_holds_exactly(std::ldexp(1, -65)));
+  EXPECT_FALSE(word_holds_exactly(std::ldexp(1, -66)));
+  EXPECT_EQ(word_decode(encode(OP_AXIS, 0, AXIS_X, -std::ldexp(1, -65))).value, -std::ldexp(1, -65));
+  EXPECT_EQ(encode(OP_AXIS, 0, AXIS_X, -std::ldexp(1, -66)), encode(OP_AXIS, 0, AXIS_X, 0));
+}
+
+TEST(ProgramWord, WhatIsNoOperationIsABlank) {
+  EXPECT_EQ(encode(OP_BLANK, 0, 0, 0), 0u);
+  EXPECT_EQ(encode(OP_ILLEGAL, 3, 4, 5), 0u);
+  EXPECT_EQ(word_decode(0).operation, OP_BLANK);
+}
+
 }  // namespace
