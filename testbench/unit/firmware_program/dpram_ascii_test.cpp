@@ -512,4 +512,12 @@ TEST_F(DpramAscii, AnyWordsAreSurvived) {
   EXPECT_EQ(ram_host.ask("P1=4 P1"), "4");
 }
 
+TEST_F(DpramAscii, AHostWaitsForAnAnswerNoLongerThanItSays) {
+  const brick::Tick begin = ram.now();
+  const brick::Reply reply = ram_host.finish(9);
+  EXPECT_FALSE(reply.complete || reply.error);
+  EXPECT_TRUE(reply.lines.empty());
+  EXPECT_EQ(ram.now() - begin, 9);
+}
+
 }  // namespace

@@ -491,4 +491,17 @@ TEST_F(DpramReportsTest, OffWithoutRamOrBase) {
   EXPECT_EQ(ram.read(DPRAM_BACKGROUND_READY), 0);
 }
 
+// The host's part of the handshake is taken back where no set comes.
+TEST_F(DpramReportsTest, AHostWaitsForASetNoLongerThanItSays) {
+  reports.choose_motors(1);
+  reports.choose_systems(1);
+  const brick::Tick begin = ram.now();
+  EXPECT_FALSE(reports.read_motors(7));
+  EXPECT_EQ(ram.now() - begin, 7);
+  EXPECT_EQ(ram.read(DPRAM_MOTOR_HOST_BUSY), 0u);
+  EXPECT_FALSE(reports.read_systems(9));
+  EXPECT_EQ(ram.now() - begin, 7 + 9);
+  EXPECT_EQ(ram.read(DPRAM_BACKGROUND_HOST_BUSY), 0u);
+}
+
 }  // namespace
