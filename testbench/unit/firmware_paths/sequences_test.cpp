@@ -2,6 +2,10 @@
 // (motion:5.3, motion:7.1).
 #include "testbench/unit/firmware_program/moving_motors.h"
 
+extern "C" {
+#include "firmware/motion/system_path.h"
+}
+
 namespace {
 
 using namespace moving_motors;
@@ -39,6 +43,40 @@ TEST_F(Sequences, AnotherMoveDoesNotOvertakeThoseThatWait) {
         if (last.ms != 0) { EXPECT_NEAR(end - came, last.ms, 10); }
         EXPECT_EQ(cs().error, RUN_TIME_NONE);
       }
+}
+
+// The first piece of a sequence, cut short, is over before an interrupt has seen it: what it is the first of begins all
+// the same, from rest with that interrupt (motion:5.1), and the real-time task sees room for another move.
+TEST_F(Sequences, AFirstPieceThatNoInterruptSeesBeginsItsSequence) {
+  piece_ring& ring = cs().ring;
+  const auto add = [&ring](double ticks, std::uint32_t move, bool continues) {
+    piece* p = piece_ring_at(&ring, ring.added);
+    *p = {};
+    piece_set_time(p, std::llround(ticks * platform::kDefaultI10));
+    p->to = PIECE_PARTS;
+    p->move = move;
+    p->continues = continues;
+    piece_ring_add(&ring);
+  };
+  add(1.5, 1, false);
+  add(0.2, 2, false);
+  add(20, 2, true);
+  cs_busy |= 1;
+  system_path_servo();
+  ASSERT_EQ(cs().started, 1u);
+  const std::uint32_t before = cs().executing;
+  cs().next_valid = cs().placed = true;
+  system_path_servo();
+  ASSERT_EQ(ring.executing, 0u);
+  EXPECT_TRUE(cs().next_valid);
+  system_path_servo();
+  ASSERT_EQ(ring.executing, 2u) << "2 of 1.5 + 0.2 are over";
+  EXPECT_EQ(cs().started, 2u);
+  EXPECT_NE(cs().executing, before);
+  EXPECT_FALSE(cs().next_valid);
+  EXPECT_FALSE(cs().placed);
+  EXPECT_EQ(ring.elapsed, 0);
+  EXPECT_EQ(ring.fraction, 0u);
 }
 
 }  // namespace

@@ -93,5 +93,26 @@ TEST_F(SsiInputs, BuffersEndBelowThePage) {
   EXPECT_EQ(c.line("DEF UBUFFER 256 I4908 SIZE"), "$FE00|24064");
 }
 
+// The first word begins with a servo clock: where a motor takes its position or its phase from one of the inputs, a
+// start waits for that, for 25 ms where none comes, and for the longest frame.
+TEST_F(SsiInputs, AStartWaitsForTheFirstWord) {
+  const auto milliseconds = [this](const std::string& variable, unsigned product) {
+    start(product);
+    c.line("I110=0 I181=0 I3281=0");
+    if (!variable.empty()) c.line(variable);
+    c.line("SAVE");
+    const std::uint64_t before = hal_long_cycles();
+    start(product);
+    return static_cast<double>(hal_long_cycles() - before) / hal_cycles_per_ms();
+  };
+  constexpr unsigned kFitted = HAL_PRODUCT_GEO_PMAC | HAL_PRODUCT_FEEDBACK_2;
+  const double none = milliseconds("", kFitted);
+  for (const char* variable : {"I110=$FF54", "I181=$FF74", "I3281=$FF54"})
+    EXPECT_NEAR(milliseconds(variable, kFitted) - none, 25.2, 0.1) << variable;
+  EXPECT_NEAR(milliseconds("I110=$FF55", kFitted), none, 0.1) << "no input";
+  EXPECT_NEAR(milliseconds("I110=$FF54", HAL_PRODUCT_GEO_PMAC), milliseconds("", HAL_PRODUCT_GEO_PMAC), 0.1)
+      << "there are none";
+}
+
 }  // namespace
 }  // namespace brick

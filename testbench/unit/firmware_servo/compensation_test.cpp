@@ -167,6 +167,48 @@ TEST_F(DesiredPosition, HmzMovesNoMotorWithATable) {
   }
 }
 
+// Whenever an interrupt comes in which the master moves the motor on: the tables are those of where it is then. With
+// one at each look it is not looked for ever.
+TEST_F(DesiredPosition, HmzLooksAtTablesWhereTheMotorIsByThen) {
+  static unsigned left, came, every;
+  ASSERT_EQ(c_.line("I51=0 #1 DEFINE COMP 4,#1D,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 0"), "");
+  c_.line("I51=1 I30=0 I105=$10F5 I106=3");
+  const auto zero = [&](unsigned first, bool again) {
+    motor_kill(0);
+    *hal_x(0x10F0) = 0;
+    master(0);
+    c_.servo(2);
+    ASSERT_EQ(c_.line("#1$*"), "");
+    close();
+    c_.servo(1);
+    left = first;
+    every = again ? 1 : 0;
+    came = 0;
+    fake_hal_on_unmask([] {
+      if (left == 0 || --left != 0) return;
+      left = every;
+      master(25 * ++came);
+      fake_task_run_servo();
+    });
+    ASSERT_EQ(c_.line("#1HMZ"), "");
+    fake_hal_on_unmask(nullptr);
+  };
+  unsigned places = 0;
+  for (; places < 1000; ++places) {
+    ASSERT_NO_FATAL_FAILURE(zero(places + 1, false));
+    if (came == 0) break;
+    c_.servo(1);
+    EXPECT_LE(std::abs(motors[0].desired_step), 96) << "1/32 count, interrupt " << places;
+  }
+  EXPECT_GT(places, 2u);
+  ASSERT_NO_FATAL_FAILURE(zero(1, true));
+  EXPECT_GE(came, 4u) << "looks";
+  EXPECT_LT(came, places + 20);
+  motor_kill(0);
+  c_.line("#1 DELETE COMP");
+}
+
 // Of an open loop the actual position is 0, and its table knows that at once: it adds nothing there, by the desired
 // position neither. At 250 that one adds 4 % of what is left: 250/1.04.
 TEST_F(DesiredPosition, HmzOfAKilledMotorWithATable) {

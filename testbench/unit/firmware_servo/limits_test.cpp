@@ -371,6 +371,25 @@ TEST_F(MotionLimits, AnOpenLoopIsClosed) {
   EXPECT_EQ(loop(1), LOOP_OPEN);
 }
 
+// What may not be closed cannot be brought to rest.
+TEST_F(MotionLimits, AnOpenLoopThatMayNotBeClosedIsKilled) {
+  c_.line("I113=100");
+  ASSERT_EQ(c_.line("#1O10"), "");
+  c_.line("I3300=1");
+  for (int n = 0; n <= 9; ++n) {
+    counts(1, 10 * n);
+    servo();
+  }
+  ASSERT_EQ(loop(1), LOOP_OPEN);
+  for (int n = 10; n < 14; ++n) {
+    counts(1, 10 * n);
+    servo();
+  }
+  EXPECT_EQ(loop(1), LOOP_KILLED);
+  EXPECT_FALSE(enabled(1));
+  EXPECT_TRUE(status2(1, 11)) << "by the limit";
+}
+
 TEST_F(MotionLimits, BitsStandWhileTheMotorIsKilled) {
   ASSERT_TRUE(motor_close(0));
   flags(1, kPositive);
