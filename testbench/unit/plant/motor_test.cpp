@@ -1,5 +1,6 @@
 // The motor's equations against what mechanics textbooks say.
 #include <cmath>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -139,6 +140,24 @@ TEST(Motor, ThreePhaseRotorFollowsATurningVector) {
   }
   EXPECT_NEAR(motor.speed(), kTwoPi * 10 / 4, 1e-3);
   EXPECT_NEAR(turns(motor), 20.0 / 4, 0.02);  // the load angle: 5e-3 x 15.7 / (0.1 x 6) = 0.13 electrical, 0.005 turns
+}
+
+TEST(Motor, WhatCannotBeIsRefused) {
+  double MotorParameters::*const positive[] = {&MotorParameters::inertia, &MotorParameters::inductance};
+  for (const auto member : positive)
+    for (const double value : {0.0, -1e-6, std::nan("")}) {
+      MotorParameters p;
+      p.*member = value;
+      EXPECT_THROW(Motor(p, kRevolution), std::invalid_argument) << value;
+    }
+  double MotorParameters::*const friction[] = {&MotorParameters::viscous, &MotorParameters::coulomb};
+  for (const auto member : friction) {
+    MotorParameters p;
+    p.*member = -1e-9;
+    EXPECT_THROW(Motor(p, kRevolution), std::invalid_argument);
+    p.*member = 0;
+    EXPECT_NO_THROW(Motor(p, kRevolution));
+  }
 }
 
 }  // namespace
