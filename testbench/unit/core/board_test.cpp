@@ -17,7 +17,10 @@ class Clocks : public Board {
   Tick now() const override { return now_; }
   void set_inputs(const BoardInputs& inputs) override { inputs_ = inputs; }
   const BoardOutputs& outputs() const override { return outputs_; }
-  Tick run_until(Tick limit, const BoardOutputs&) override { return now_ = limit; }
+  Tick run_until(Tick limit, const BoardOutputs&) override {
+    outputs_.set(pin::kTxde, 1);
+    return now_ = limit;
+  }
 
   BoardInputs inputs_{};
 
@@ -32,6 +35,7 @@ TEST(BoardFace, LeavesOutWhatAnEngineHasNot) {
   std::unique_ptr<Board> board = std::make_unique<Clocks>(&gone);
   board->run_until(7);
   EXPECT_EQ(board->quiet_until(BoardOutputs{}), 7) << "it cannot predict";
+  EXPECT_TRUE(board->outputs().get(pin::kTxde) == 1 && board->port_a_at_once() == board->outputs()) << "flip-flops";
   EXPECT_FALSE(board->dpram_word(0)) << "it cannot say";
   EXPECT_EQ(board->motor_digest(), nullptr);
   BoardInputs inputs{};
