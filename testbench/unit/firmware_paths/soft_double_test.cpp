@@ -1,6 +1,7 @@
 // Products and quotients of the image are those of the machine, to the last bit.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -56,6 +57,16 @@ TEST_F(SoftDouble, AtTheEndsOfTheRange) {
     return value(random() >> 63 << 63 | ends[random() % 10] << 52 | random() >> (12 + random() % 52));
   };
   for (int i = 0; i < 200000 && !HasFailure(); ++i) expect(some(), some());
+}
+
+// The smallest in halves, quarters and so on: results in the very middle of two, and beside it.
+TEST_F(SoftDouble, TiesOfTheSmallest) {
+  for (std::uint64_t k = 1; k < 300; ++k)
+    for (int n = 1; n < 8; ++n) {
+      expect(value(k), std::ldexp(1, n));
+      expect(value(k), std::ldexp(1, -n));
+      expect(value(k), std::ldexp(3, -n));
+    }
 }
 
 TEST_F(SoftDouble, Special) {
