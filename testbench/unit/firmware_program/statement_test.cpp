@@ -86,6 +86,46 @@ TEST_F(Statement, AnErrorStoresNothingOfTheLine) {
   EXPECT_EQ(platform::host("PR"), "0");
 }
 
+// Each number of a statement at both ends of its range, and one beyond; what is listed is what was entered.
+TEST_F(Statement, NumbersHaveTheEndsOfTheirRanges) {
+  ASSERT_EQ(platform::host("CLOSE"), "");
+  const auto accepted = [](const std::string& text) {
+    const std::string buffer = text.rfind("ADR", 0) == 0 ? "PLC 1" : "PROG 1";
+    EXPECT_EQ(platform::host("OPEN " + buffer + " CLEAR"), "");
+    const std::string reply = platform::host(text);
+    EXPECT_EQ(platform::host("CLOSE"), "");
+    const std::string listed = platform::host("LIST " + buffer);
+    EXPECT_EQ(listed, reply.empty() ? text + "|RET" : "ERR003") << text << ": nothing is stored of what is refused";
+    return reply.empty();
+  };
+  const struct {
+    const char *before, *after;
+    long first, last;
+  } ranges[] = {
+      {"TM", "", 0, 8388607},   {"N", "", 0, 262143},       {"O", "", 0, 262143},       {"HM", "", 1, 32},
+      {"DISPLC", "", 0, 31},    {"ENAPLC", "", 0, 31},      {"ADR#", "", 1, 32},        {"ADR&", "", 1, 16},
+      {"ADR#P", "", 0, 8191},   {"ADR&P", "", 0, 8191},     {"LOCK", ",P5", 0, 7},      {"LOCK3,P", "", 0, 8191},
+      {"DISP", "\"A\"", 0, 79}, {"DISP3,", ".2,P1", 1, 16}, {"DISP3,12.", ",P1", 0, 9}, {"DISP", ",8.3,P1", 0, 79}};
+  for (const auto& range : ranges)
+    for (const long number : {range.first - 1, range.first, range.last, range.last + 1}) {
+      const std::string text = range.before + std::to_string(number) + range.after;
+      EXPECT_EQ(accepted(text), number >= range.first && number <= range.last) << text;
+    }
+  for (int c = ' '; c < 0x7F; ++c) {
+    if (c == '"' || (c >= 'a' && c <= 'z')) continue;  // lower case is taken for upper case
+    EXPECT_EQ(accepted(std::string("CMD^") + static_cast<char>(c)), c >= '@' && c <= '_') << static_cast<char>(c);
+    if (c != ' ') {
+      EXPECT_EQ(accepted(std::string("READ(") + static_cast<char>(c) + ")"),
+                c >= 'A' && c <= 'Z' && c != 'N' && c != 'O')
+          << static_cast<char>(c);
+    }
+  }
+  for (const char* rate : {"F", "TA", "TS", "DWE", "DLY", "PVT"}) {
+    EXPECT_FALSE(accepted(std::string(rate) + "-1")) << rate;
+    EXPECT_TRUE(accepted(std::string(rate) + "0")) << rate;
+  }
+}
+
 TEST_F(Statement, OnLineCommandsStillActWhileABufferIsOpen) {
   EXPECT_EQ(platform::host("X1"), "");
   EXPECT_EQ(platform::host("PR"), "1");
