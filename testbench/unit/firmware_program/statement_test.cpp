@@ -115,6 +115,8 @@ TEST_F(Statement, NumbersHaveTheEndsOfTheirRanges) {
     if (c == '"' || (c >= 'a' && c <= 'z')) continue;  // lower case is taken for upper case
     EXPECT_EQ(accepted(std::string("CMD^") + static_cast<char>(c)), c >= '@' && c <= '_') << static_cast<char>(c);
     if (c != ' ') {
+      EXPECT_EQ(accepted(std::string("DISP3,12.") + static_cast<char>(c) + ",P1"), c >= '0' && c <= '9')
+          << static_cast<char>(c);
       EXPECT_EQ(accepted(std::string("READ(") + static_cast<char>(c) + ")"),
                 c >= 'A' && c <= 'Z' && c != 'N' && c != 'O')
           << static_cast<char>(c);
