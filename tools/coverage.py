@@ -64,7 +64,7 @@ def folders(root):
     return sorted({str(path.parent) for path in sources if OURS.match(str(path))})
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def text_lines(path):
     return path.read_text().splitlines()
 

@@ -85,7 +85,7 @@ module channel_subcount (
 
   assign fraction_o   = down_i ? ~e_q : e_q;
   assign fraction_d_o = count_i ? {12{down_new_i}} : fraction_o;
-  logic unused;  // a difference that is not negative is below T1
+  logic unused;  // of a difference that is not negative: as wide as what it is of, or below T1
   assign unused = &{1'b0, less[22:13], once[23], twice[23]};
 
 endmodule : channel_subcount

@@ -1,5 +1,5 @@
 // What the Ethernet server does when the system refuses it something: a port for datagrams, a descriptor for a client,
-// a port that has just been in use (ethernet:1/1).
+// a port that has just been in use (docs/ethernet.md, limits).
 #include <gtest/gtest.h>
 
 #include <dlfcn.h>
@@ -14,6 +14,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/ethernet_server.h"
@@ -34,6 +35,10 @@ struct Refused {
     at.push_back(std::chrono::steady_clock::now());
     errno = error;
     return true;
+  }
+  std::vector<std::chrono::steady_clock::time_point> times() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return at;
   }
 } refused;
 
@@ -131,9 +136,10 @@ TEST_F(EthernetRefused, AClientWaitsForADescriptor) {
   start(server);
   refused.accepts = 2;
   answered(port_of(server));
-  ASSERT_EQ(refused.at.size(), 2u);
-  EXPECT_GE(refused.at[1] - refused.at[0], std::chrono::milliseconds(100));
-  EXPECT_GE(std::chrono::steady_clock::now() - refused.at[1], std::chrono::milliseconds(100));
+  const auto times = refused.times();
+  ASSERT_EQ(times.size(), 2u);
+  EXPECT_GE(times[1] - times[0], std::chrono::milliseconds(100));
+  EXPECT_GE(std::chrono::steady_clock::now() - times[1], std::chrono::milliseconds(100));
   times_refused();
   answered(port_of(server));
 }

@@ -22,7 +22,7 @@ TEST(Path, TheLastStopHasTheRoomThatIsLeft) {
   EXPECT_EQ(path_ends(&p, 1), path_time(10) + path_time(8) / 2);
 }
 
-// motion:9.1/3: behind its end a move is at its end, to the bit; start and way alone miss it.
+// motion:5.1/2: behind its end a move is where its axes are to end, to the bit; start and way alone miss it.
 TEST(Path, AnEndIsThePositionThatIsWritten) {
   static path p;
   static double position[AXIS_COUNT];

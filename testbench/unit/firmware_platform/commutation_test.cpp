@@ -91,7 +91,7 @@ TEST_F(Commutation, BiasStaysOnTheOutputsOfAKilledMotor) {
   EXPECT_EQ(b(), -200);
 }
 
-// motion:3.2: of a motor that is killed nothing of a command is left, to the last bit.
+// motion:3.1/3: of a motor that is killed nothing of a command is left, to the last bit.
 TEST_F(Commutation, AKilledMotorIsCommandedNothing) {
   set("I177=-300 I156=0.001 I178=0.0004");
   phase_motor& m = phase_motors[0];

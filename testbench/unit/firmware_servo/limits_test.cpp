@@ -86,7 +86,7 @@ TEST_F(MotionLimits, SoftwareLimitsLookAtTheActualPosition) {
   EXPECT_TRUE(status1(1, 21));
 }
 
-// motion:1.4: into a limit nothing is taken; what leads out of it is, and what leads nowhere.
+// motion:6.2/3: what leads further into a limit moves nothing; what leads out of it does.
 TEST_F(MotionLimits, OnlyWhatLeadsIntoALimitIsNotTaken) {
   const struct {
     const char* line;

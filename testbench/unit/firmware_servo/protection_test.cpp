@@ -525,7 +525,8 @@ TEST_F(Protection, IntegratedError) {
   EXPECT_EQ(loop(1), LOOP_KILLED);
 }
 
-// motion:6.1: what trips a motor takes its in-position bit away in the same pass, however wide Ixx28 is.
+// motion:6.5/1: what trips a motor opens its loop, and so takes its in-position bit away in the same pass, however
+// wide Ixx28 is.
 TEST_F(Protection, ATripEndsInPosition) {
   const std::function<void()> causes[] = {[] { counts(1, 150); }, [] { flags(1, kFault); },
                                           [this] { c_.line("I163=-160"); }};

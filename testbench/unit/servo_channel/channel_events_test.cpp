@@ -173,7 +173,8 @@ TEST_F(ChannelEvents, AreNoneOfWhatRests) {
 }
 
 // A compare is left at the SCLK edge behind the one that arrives there, at a count an edge (servo-ic:5.10); with the
-// fraction of 1/T up to three counts sooner. One that another channel's position drives may be left with each edge.
+// fraction of 1/T up to three counts sooner, as systemc/servo_ic/channel_compare.h allows itself. One that another
+// channel's position drives may be left with each edge.
 TEST_F(ChannelEvents, OfEquAreNotBeforeTheCountsToTheCompare) {
   for (const bool fine : {false, true})
     for (const std::uint32_t at : {1u, 4u, 9u, 0xFFFFFFu, 0xFFFFFAu}) {

@@ -393,6 +393,28 @@ TYPED_TEST(SsiTriggers, AResetInAFrameLetsTheClockUpAndTheGroupIdle) {
     this->edges.clear();
   }
 }
+// Cycle n of 100 MHz ends at the first tick not before n x 18432/15625 (servo-ic:11.3/3), 2^23 of them, too.
+TEST(SsiModel, TheLongestDelayEndsAtItsTick) {
+  for (const Tick divisor : {255, 254}) {
+    Ssi ssi(sc_core::sc_gen_unique_name("ssi"));
+    ssi.geo = false;
+    ssi.phase = ssi.servo = true;
+    ssi.data = 0xFF;
+    ssi.reset(0);
+    ssi.write(true, 0x2F, static_cast<std::uint32_t>(divisor) << 16 | 15 << 12 | 0x312);
+    ssi.write(true, brick_word(1), 0x1400 | 12);
+    ssi.advance(3);
+    ssi.servo = false;
+    ssi.advance(4);
+    const Tick fall = 4 + (((divisor + 1) << 15) * 18432 + 15624) / 15625;
+    EXPECT_EQ(ssi.next_event(), fall);
+    ssi.advance(fall - 1);
+    EXPECT_EQ(ssi.clk(), 0xFFu);
+    ssi.advance(fall);
+    EXPECT_EQ(ssi.clk(), 0xFEu);
+  }
+}
+
 // What the model costs: it asks for the edges of the serial clock and for none else, neither for nets that move while
 // no channel waits, nor for refused triggers, the rest, the end of a frame.
 TEST(SsiModel, WakesForTheEdgesOfFramesOnly) {
