@@ -110,24 +110,18 @@ void EthernetServer::Impl::listen(const std::string& place) {
 
 void EthernetServer::Impl::accept() {
   acceptor.async_accept([this](asio::error_code error, tcp::socket socket) {
-    if (error == asio::error::operation_aborted) return;
     if (!error) {
       take(std::move(socket));
       return accept();
     }
     pause.expires_after(kAcceptPause);  // no more file descriptors, for example
-    pause.async_wait([this](asio::error_code stopped) {
-      if (!stopped) accept();
-    });
+    pause.async_wait([this](asio::error_code) { accept(); });
   });
 }
 
 void EthernetServer::Impl::take(tcp::socket socket) {
-  if (connections.size() >= kMostClients) {
-    asio::error_code ignored;
-    socket.shutdown(tcp::socket::shutdown_both, ignored);
+  if (connections.size() >= kMostClients)  // the socket goes with its end
     return tell(refused, fmt::format("a client is refused: {} are connected", kMostClients));
-  }
   const Client client = ++last;
   auto connection = std::make_shared<EthernetConnection>(std::move(socket), kMostRequests);
   connection->on_request = [this, client](const EthernetPacket& packet) { owner.on_request(client, packet); };
@@ -151,7 +145,6 @@ void EthernetServer::Impl::forget(Client client) {
 
 void EthernetServer::Impl::receive() {
   datagrams.async_receive_from(asio::buffer(datagram), sender, [this](asio::error_code error, std::size_t count) {
-    if (error == asio::error::operation_aborted) return;
     if (!error) take_datagram(count);
     receive();
   });

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sys/socket.h>
-
 #include <cerrno>
 
 #include <asio.hpp>
@@ -19,6 +17,7 @@
 
 #include "app/ethernet_server.h"
 #include "systemc/core/usage_error.h"
+#include "testbench/unit/app/receive_some.h"
 
 namespace brick {
 namespace {
@@ -76,12 +75,6 @@ class EthernetClients : public ::testing::Test {
     return {'\xC0', static_cast<char>(code), static_cast<char>(number >> 8), static_cast<char>(number), 0, 0, 0, 2};
   }
   static void send(tcp::socket& socket, const std::string& bytes) { asio::write(socket, asio::buffer(bytes)); }
-  // Nothing comes for so long: a failure, not an end of the run.
-  static ssize_t receive_some(tcp::socket& socket, char* at, std::size_t most) {
-    const timeval longest{10, 0};
-    ::setsockopt(socket.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof longest);
-    return ::recv(socket.native_handle(), at, most, 0);
-  }
   static std::string receive(tcp::socket& socket, std::size_t count) {
     std::string bytes(count, '\0');
     std::size_t at = 0;
@@ -275,10 +268,10 @@ TEST_F(EthernetClients, DatagramsAreRequestsOfTheirSender) {
        {request(1, 0x99), std::string("\xC0\xC2\0", 3), std::string(), request(2) + request(3)})
     sender.send_to(asio::buffer(bytes), to);
   char reply[8];
-  EXPECT_EQ(sender.receive(asio::buffer(reply)), 2u);
+  EXPECT_EQ(receive_some(sender, reply, sizeof reply), 2);
   for (unsigned n = 4; n < 40; ++n) {  // each is answered: none is too many
     sender.send_to(asio::buffer(request(n)), to);
-    EXPECT_EQ(sender.receive(asio::buffer(reply)), 2u);
+    EXPECT_EQ(receive_some(sender, reply, sizeof reply), 2);
   }
   ASSERT_EQ(asked_.size(), 37u);
   EXPECT_EQ(asked_[0].value, 2);

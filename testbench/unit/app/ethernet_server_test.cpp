@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <netinet/tcp.h>
+#include <sys/ioctl.h>
 
 #include <asio.hpp>
 
@@ -14,6 +15,7 @@
 
 #include "app/ethernet_connection.h"
 #include "app/ethernet_server.h"
+#include "testbench/unit/app/receive_some.h"
 
 namespace brick {
 namespace {
@@ -59,7 +61,7 @@ class SendersOfDatagrams : public ::testing::Test {
     asked_.clear();
     lock.unlock();
     char reply[4];
-    if (replies_) senders_[sender].receive(asio::buffer(reply));
+    if (replies_) { EXPECT_EQ(receive_some(senders_[sender], reply, sizeof reply), 2); }
     return client;
   }
   std::vector<Client> forgotten() {
@@ -141,10 +143,10 @@ TEST(EthernetPlaces, AnAsteriskIsEveryAddress) {
     tcp::socket client(io);
     client.connect({address, port});
     asio::write(client, asio::buffer(ready));
-    EXPECT_EQ(client.receive(asio::buffer(reply)), 2u) << address;
+    EXPECT_EQ(receive_some(client, reply, sizeof reply), 2) << address;
     udp::socket datagrams(io, udp::endpoint(address.is_v4() ? udp::v4() : udp::v6(), 0));
     datagrams.send_to(asio::buffer(ready), {address, port});
-    EXPECT_EQ(datagrams.receive(asio::buffer(reply)), 2u) << address;
+    EXPECT_EQ(receive_some(datagrams, reply, sizeof reply), 2) << address;
   }
   server.stop();
 }
@@ -170,6 +172,38 @@ TEST(EthernetConnections, AClientThatSaysNothingIsAskedWhetherItIsThere) {
   EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPCNT), 6);
   EXPECT_EQ(option(IPPROTO_TCP, TCP_USER_TIMEOUT), 120'000) << "ms, of a reply that it does not take";
   EXPECT_EQ(option(IPPROTO_TCP, TCP_NODELAY), 1);
+}
+
+// ethernet:1/9: what may not be asked yet stays with the system, which stops the client.
+TEST(EthernetConnections, NothingIsReadWhileAsManyAreUnderWayAsMayBe) {
+  asio::io_context io;
+  tcp::acceptor acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), 0));
+  tcp::socket client(io), socket(io);
+  client.connect(acceptor.local_endpoint());
+  acceptor.accept(socket);
+  const int descriptor = socket.native_handle();
+  const auto unread = [descriptor] {
+    int bytes = -1;
+    ::ioctl(descriptor, FIONREAD, &bytes);
+    return bytes;
+  };
+  const auto connection = std::make_shared<EthernetConnection>(std::move(socket), 1);
+  int asked = 0;
+  connection->on_request = [&](const EthernetPacket&) { ++asked; };
+  connection->on_close = [](const std::string&) {};
+  connection->start();
+  const auto ask = [&client] { asio::write(client, asio::buffer("\xC0\xC2\0\0\0\0\0\2", 8)); };
+  ask();
+  while (asked < 1) io.run_one();
+  ask();
+  io.poll();
+  io.restart();  // nothing was left for it to wait for
+  EXPECT_EQ(unread(), 8);
+  connection->reply("ok");
+  while (asked < 2 && io.run_one() > 0) {}
+  EXPECT_EQ(unread(), 0);
+  connection->close("");
+  io.run();
 }
 
 // One that is gone, with a request behind the one whose reply it did not take: it is gone at once, whatever else of it
