@@ -137,18 +137,19 @@ TEST_F(ChannelFineCompareTest, EachCompareIsLeftAtTheSclkEdgeThatFindsThePositio
 }
 
 // Channel 2 stands at its own position and looks at channel 1's instead, and back: a compare lies between the two, or
-// on one of them. Nothing has moved, so nothing is left.
+// on one of them, be they a count apart, as far as a position may move, or farther. Nothing has moved, so nothing is
+// left.
 TEST_F(ChannelFineCompareTest, AChangeOfTheSourceLeavesNothing) {
-  for (const bool up : {true, false}) {
+  for (const auto& [up, apart] : {std::pair{true, 1}, {false, 1}, {true, 20}, {false, 20}}) {
     const int way = up ? 1 : -1;
     control(1, kFineWord | kCounterReset);
     control(2, kFineWord | kCounterReset);
     control(1, kFineWord);
     control(2, kFineWord);
-    steps(1, 24, up);
+    steps(1, 4 + apart, up);
     steps(2, 4, up);
     rig_.ticks(40 * kSclk);  // until both fractions have reached their end
-    for (const int cell : {4, 10, 24})
+    for (const int cell : {4, 5, 10, 24})
       for (const bool of_a : {true, false}) {
         const Place between{cell * way, 2000}, far{100 * way, 0};
         const Place &a = of_a ? between : far, &b = of_a ? far : between;
