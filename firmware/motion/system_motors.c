@@ -324,6 +324,10 @@ uint32_t system_motor_mover(uint32_t motor) {
   return COORDINATE_SYSTEMS;
 }
 
+static bool is_moved_by(uint32_t cs, uint32_t motor) {
+  return jog_is_of_program(motor) && system_motor_mover(motor) == cs;
+}
+
 static void ramp(uint32_t motor) {
   (void)jog_stop_at(motor, i_variable_read(i_motor_real(motor + 1u, IXX15_ABORT_DECELERATION)));
 }
@@ -331,7 +335,7 @@ static void ramp(uint32_t motor) {
 void system_motors_ramp(uint32_t cs) {
   time_base_stay(cs);
   for (uint32_t motor = 0; motor < MOTORS; motor++)
-    if (axis_definitions[motor].assigned && axis_definitions[motor].cs == cs) ramp(motor);
+    if ((axis_definitions[motor].assigned && axis_definitions[motor].cs == cs) || is_moved_by(cs, motor)) ramp(motor);
 }
 
 /* The real-time task may have forgotten whose they are; another's they are only when it moves them. */

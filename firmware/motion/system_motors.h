@@ -52,11 +52,11 @@ void system_motors_take(uint32_t cs);     /* the program goes on with them: they
 /* The system that moves a motor by RAPID or HOME, be the motor its own, another's or nobody's; COORDINATE_SYSTEMS:
  * none. Of two it is that of the motor. Any task. */
 uint32_t system_motor_mover(uint32_t motor);
-/* An abort: those of closed loops leave its path, to rest at Ixx15. Any task. */
+/* An abort: those of closed loops leave its path, to rest at Ixx15, and so do others that it moves. Any task. */
 void system_motors_ramp(uint32_t cs);
 /* Bit n: motor n is one that it moves so, or is about to. Servo task held off. */
 uint32_t system_motors_alone(uint32_t cs);
-/* Behind a ramp: those that it moved so when the moves were dropped, its own or not, but for one that another moves. */
+/* Behind a ramp, of those when the moves were dropped: what the real-time task has begun in between. */
 void system_motors_ramp_rest(uint32_t cs, uint32_t of);
 /* PSET, at rest: the axes in `axes` are at `position` from now on, by the bias of the motors. */
 void system_motors_set_position(uint32_t cs, uint32_t axes, const double position[AXIS_COUNT]);

@@ -32,8 +32,8 @@ case item, an enable, a reset, a condition, a statement left out. `./dev mutate 
 parser, puts many mutants into one Verilated model, of which a number chooses one, and runs the module's tests on each;
 `./dev mutate firmware FOLDER` does so with Clang's parser, the native build of the firmware and the tests that come to
 the place, then, of what they leave, with the image that is linked with the mutant and its tests on the CPU model;
-`./dev mutate model FOLDER` with the SystemC model, `./dev mutate host NAME` with the host library, the Ethernet server
-and the models of its buses. Number 0 is the source as it is and passes. The first failure stops; behind other tests in
+`./dev mutate model FOLDER` with the SystemC model, `./dev mutate host NAME` with the host library, the Ethernet server,
+the models of its buses and what reads a client's lines. Number 0 is the source as it is and passes. The first failure stops; behind other tests in
 one process it counts when that test fails alone, too (seen of all rows but the model's).
 
 - **score**: killed of killed and alive. A mutant of RTL or of the model stands in that engine alone and every

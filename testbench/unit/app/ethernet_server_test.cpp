@@ -11,6 +11,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <thread>
 #include <vector>
 
 #include "app/ethernet_connection.h"
@@ -194,13 +195,15 @@ TEST(EthernetConnections, NothingIsReadWhileAsManyAreUnderWayAsMayBe) {
   connection->start();
   const auto ask = [&client] { asio::write(client, asio::buffer("\xC0\xC2\0\0\0\0\0\2", 8)); };
   ask();
-  while (asked < 1) io.run_one();
+  while (asked < 1 && io.run_one_for(std::chrono::seconds(10)) > 0) {}
+  ASSERT_EQ(asked, 1);
   ask();
   io.poll();
   io.restart();  // nothing was left for it to wait for
+  for (int ms = 0; ms < 10'000 && unread() < 8; ++ms) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_EQ(unread(), 8);
   connection->reply("ok");
-  while (asked < 2 && io.run_one() > 0) {}
+  while (asked < 2 && io.run_one_for(std::chrono::seconds(10)) > 0) {}
   EXPECT_EQ(unread(), 0);
   connection->close("");
   io.run();

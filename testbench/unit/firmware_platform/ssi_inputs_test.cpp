@@ -94,7 +94,8 @@ TEST_F(SsiInputs, BuffersEndBelowThePage) {
 }
 
 // The first word begins with a servo clock: where a motor takes its position or its phase from one of the inputs, a
-// start waits for that, for 25 ms where none comes, and for the longest frame.
+// start waits for that, where none comes for the 25 ms of the watchdog (servo-ic:10/5), and for the longest frame: 25
+// clocks of 153.6 kHz and 20 us of rest (servo-ic:11.4), 183 us, rounded up.
 TEST_F(SsiInputs, AStartWaitsForTheFirstWord) {
   const auto milliseconds = [this](const std::string& variable, unsigned product) {
     start(product);

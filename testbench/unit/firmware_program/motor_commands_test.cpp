@@ -293,6 +293,19 @@ TEST_F(MotorStops, AbortStopsMotorsOfNoSystemThatItsProgramHomes) {
   }
 }
 
+// motion:8.1/7, motion:8.1/8: so does a run-time error, by a bit that anybody may write while the motor moves.
+TEST_F(MotorStops, ARunTimeErrorStopsMotorsOfNoSystemThatItsProgramHomes) {
+  ASSERT_EQ(host("I223=20 #1J/#2J/ &1E"), "");
+  run(300);
+  for (const char* line : {"OPEN PROG 1 CLEAR", "HOME2", "CLOSE", "&1B1R"}) ASSERT_EQ(host(line), "") << line;
+  run(200);
+  ASSERT_GT(step_of(1), 8);
+  ASSERT_EQ(host("WY$203F,$400000"), "");
+  run(300);
+  EXPECT_EQ(step_of(1), 0);
+  EXPECT_FALSE(jog_is_homing(1));
+}
+
 // The motor has been asked to go before the servo interrupt with which the move begins.
 TEST_F(MotorStops, AbortStopsWhatItsProgramIsAboutToHome) {
   ASSERT_EQ(host("I223=20 #1J/#2J/ &1E"), "");

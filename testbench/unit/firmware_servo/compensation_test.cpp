@@ -191,8 +191,9 @@ TEST_F(DesiredPosition, HmzLooksAtTablesWhereTheMotorIsByThen) {
       master(25 * ++came);
       fake_task_run_servo();
     });
-    ASSERT_EQ(c_.line("#1HMZ"), "");
+    const std::string answer = c_.line("#1HMZ");
     fake_hal_on_unmask(nullptr);
+    ASSERT_EQ(answer, "");
   };
   unsigned places = 0;
   for (; places < 1000; ++places) {
