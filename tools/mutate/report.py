@@ -33,8 +33,8 @@ parser, puts many mutants into one Verilated model, of which a number chooses on
 `./dev mutate firmware FOLDER` does so with Clang's parser, the native build of the firmware and the tests that come to
 the place, then, of what they leave, with the image that is linked with the mutant and its tests on the CPU model;
 `./dev mutate model FOLDER` with the SystemC model, `./dev mutate host NAME` with the host library, the Ethernet server,
-the models of its buses and what reads a client's lines. Number 0 is the source as it is and passes. The first failure stops; behind other tests in
-one process it counts when that test fails alone, too (seen of all rows but the model's).
+the models of its buses and what reads a client's lines. Number 0 is the source as it is and passes. The first failure
+stops; behind other tests in one process it counts when that test fails alone, too (seen of all rows but the model's).
 
 - **score**: killed of killed and alive. A mutant of RTL or of the model stands in that engine alone and every
   comparison of the two is off: the tests have values of their own, the proof has its rules, Icarus shows what is
