@@ -205,7 +205,12 @@ bool jog_is_to_ramp(uint32_t motor) {
   return (j->ready || (jogs_asked & jog_bit(motor)) != 0u) && j->request.aim == AIM_RAMP;
 }
 
-bool jog_is_of_program(uint32_t motor) { return jog_is_moving(motor) && jog_present(&jogs[motor])->by_program; }
+bool jog_is_of_program(uint32_t motor) {
+  if (!jog_is_moving(motor)) return false;
+  const struct jog* j = &jogs[motor];
+  const bool is_to_come = (j->ready || (jogs_asked & jog_bit(motor)) != 0u) && j->request.by_program;
+  return is_to_come || jog_present(j)->by_program;
+}
 
 bool jog_is_homing(uint32_t motor) {
   const struct jog_motion* now = jog_now(&jogs[motor]);

@@ -293,6 +293,28 @@ TEST_F(MotorStops, AbortStopsMotorsOfNoSystemThatItsProgramHomes) {
   }
 }
 
+// What its program homes may be jogged by somebody until the search begins: an abort before that stops it as one behind
+// it does, and nothing is searched afterwards.
+TEST_F(MotorStops, AbortForgetsAHomeThatWouldTakeTheMotorFromAJog) {
+  ASSERT_EQ(host("I223=20 I5192=50 #1J/#2J/ &1E"), "");
+  run(300);
+  for (const char* line : {"OPEN PROG 1 CLEAR", "HOME2", "CLOSE"}) ASSERT_EQ(host(line), "") << line;
+  int found = 0;  // aborts before a search
+  for (int wait = 0; wait < 12; ++wait) {
+    ASSERT_EQ(host("#2J-"), "");
+    run(300);
+    ASSERT_LT(step_of(1), -8);
+    ASSERT_EQ(host("&1B1R"), "");
+    run(wait);
+    const bool searches = jog_is_homing(1);
+    ASSERT_EQ(host("&1A"), "");
+    run(300);
+    EXPECT_FALSE(jog_is_homing(1)) << wait;
+    found += searches ? 0 : 1;
+  }
+  EXPECT_GT(found, 2);
+}
+
 // motion:8.1/7, motion:8.1/8: so does a run-time error, by a bit that anybody may write while the motor moves.
 TEST_F(MotorStops, ARunTimeErrorStopsMotorsOfNoSystemThatItsProgramHomes) {
   ASSERT_EQ(host("I223=20 #1J/#2J/ &1E"), "");
