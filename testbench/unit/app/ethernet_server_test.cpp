@@ -152,13 +152,27 @@ TEST(EthernetPlaces, AnAsteriskIsEveryAddress) {
   server.stop();
 }
 
-// ethernet:1/10
-TEST(EthernetConnections, AClientThatSaysNothingIsAskedWhetherItIsThere) {
+// A client and the server's end of its connection.
+class EthernetConnections : public ::testing::Test {
+ protected:
+  EthernetConnections() {
+    client.connect(acceptor.local_endpoint());
+    acceptor.accept(socket);
+  }
+  void ask() { asio::write(client, asio::buffer("\xC0\xC2\0\0\0\0\0\2", 8)); }
+  void run_until_asked(int times) {
+    while (asked < times && io.run_one_for(std::chrono::seconds(10)) > 0) {}
+    ASSERT_EQ(asked, times);
+  }
+
   asio::io_context io;
-  tcp::acceptor acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), 0));
-  tcp::socket client(io), socket(io);
-  client.connect(acceptor.local_endpoint());
-  acceptor.accept(socket);
+  tcp::acceptor acceptor{io, tcp::endpoint(asio::ip::address_v4::loopback(), 0)};
+  tcp::socket client{io}, socket{io};
+  int asked = 0;
+};
+
+// ethernet:1/10
+TEST_F(EthernetConnections, AClientThatSaysNothingIsAskedWhetherItIsThere) {
   const int descriptor = socket.native_handle();
   const auto option = [descriptor](int level, int name) {
     int value = -1;
@@ -176,12 +190,7 @@ TEST(EthernetConnections, AClientThatSaysNothingIsAskedWhetherItIsThere) {
 }
 
 // ethernet:1/9: what may not be asked yet stays with the system, which stops the client.
-TEST(EthernetConnections, NothingIsReadWhileAsManyAreUnderWayAsMayBe) {
-  asio::io_context io;
-  tcp::acceptor acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), 0));
-  tcp::socket client(io), socket(io);
-  client.connect(acceptor.local_endpoint());
-  acceptor.accept(socket);
+TEST_F(EthernetConnections, NothingIsReadWhileAsManyAreUnderWayAsMayBe) {
   const int descriptor = socket.native_handle();
   const auto unread = [descriptor] {
     int bytes = -1;
@@ -189,21 +198,18 @@ TEST(EthernetConnections, NothingIsReadWhileAsManyAreUnderWayAsMayBe) {
     return bytes;
   };
   const auto connection = std::make_shared<EthernetConnection>(std::move(socket), 1);
-  int asked = 0;
   connection->on_request = [&](const EthernetPacket&) { ++asked; };
   connection->on_close = [](const std::string&) {};
   connection->start();
-  const auto ask = [&client] { asio::write(client, asio::buffer("\xC0\xC2\0\0\0\0\0\2", 8)); };
   ask();
-  while (asked < 1 && io.run_one_for(std::chrono::seconds(10)) > 0) {}
-  ASSERT_EQ(asked, 1);
+  ASSERT_NO_FATAL_FAILURE(run_until_asked(1));
   ask();
   io.poll();
   io.restart();  // nothing was left for it to wait for
   for (int ms = 0; ms < 10'000 && unread() < 8; ++ms) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_EQ(unread(), 8);
   connection->reply("ok");
-  while (asked < 2 && io.run_one_for(std::chrono::seconds(10)) > 0) {}
+  ASSERT_NO_FATAL_FAILURE(run_until_asked(2));
   EXPECT_EQ(unread(), 0);
   connection->close("");
   io.run();
@@ -211,20 +217,14 @@ TEST(EthernetConnections, NothingIsReadWhileAsManyAreUnderWayAsMayBe) {
 
 // One that is gone, with a request behind the one whose reply it did not take: it is gone at once, whatever else of it
 // is under way, and nothing of it is begun behind that.
-TEST(EthernetConnections, NothingIsAskedByOneThatIsGone) {
-  asio::io_context io;
-  tcp::acceptor acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), 0));
-  tcp::socket client(io), socket(io);
-  client.connect(acceptor.local_endpoint());
-  acceptor.accept(socket);
+TEST_F(EthernetConnections, NothingIsAskedByOneThatIsGone) {
   const auto connection = std::make_shared<EthernetConnection>(std::move(socket), 16);
-  int asked = 0, closed = 0, late = 0;
+  int closed = 0, late = 0;
   connection->on_request = [&](const EthernetPacket&) { ++(closed != 0 ? late : asked); };
   connection->on_close = [&](const std::string&) { ++closed; };
   connection->start();
-  const auto ask = [&client] { asio::write(client, asio::buffer("\xC0\xC2\0\0\0\0\0\2", 8)); };
   for (int n = 0; n < 2; ++n) ask();
-  while (asked < 2) io.run_one();
+  ASSERT_NO_FATAL_FAILURE(run_until_asked(2));
   connection->reply(std::string(64 << 20, 'x'));
   io.poll();  // as much of it as the system takes
   ask();
