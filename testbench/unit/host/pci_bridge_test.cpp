@@ -200,6 +200,9 @@ TEST_F(PciBridgeTest, OnlyWhatIsTheStartUpsIsWritten) {
   configure(PciBridge::kInterrupt, 0xFFFFFF0B);
   write(PciSpace::kConfiguration, PciBridge::kInterrupt + 1, 0x55, 1);
   EXPECT_EQ(configuration(PciBridge::kInterrupt), 0x010Bu);
+  for (const std::uint32_t address : {0x10u, 0x14u, 0x30u}) configure(address, 0x56780001);
+  EXPECT_EQ(configuration(PciBridge::kCommand), 0x02000002u) << "each has its own";
+  EXPECT_EQ(configuration(PciBridge::kInterrupt), 0x010Bu);
   EXPECT_EQ(read(PciSpace::kConfiguration, 0xFF, 1), 0u) << "the last byte";
   EXPECT_EQ(read(PciSpace::kConfiguration, PciBridge::kSubsystem + 1, 2), 0xF09Au);
   EXPECT_THAT(local_.cycles, ::testing::IsEmpty());
