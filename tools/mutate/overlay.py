@@ -159,5 +159,6 @@ class Overlay:
                 words[words.index(target)] = new
                 objects.remove(new)
         at = next(i for i, w in enumerate(words) if w.endswith(".a"))
-        run(words[:at] + objects + words[at:], self.tree)
+        # A source may stand in two libraries of the program: its first object counts, as it would of archives.
+        run([*words[:at], "-Wl,--allow-multiple-definition", *objects, *words[at:]], self.tree)
         return binary
