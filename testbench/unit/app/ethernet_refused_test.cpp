@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <dlfcn.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <cerrno>
@@ -26,6 +27,7 @@ namespace {
 // Calls of the system that are yet to be refused, and when those came that were.
 struct Refused {
   std::atomic<int> datagram_binds{0}, accepts{0};
+  std::atomic<bool> ipv6_alone{false};  // as a system does whose net.ipv6.bindv6only is 1
   std::mutex mutex;
   std::vector<std::chrono::steady_clock::time_point> at;
 
@@ -46,6 +48,14 @@ struct Refused {
 }  // namespace
 
 // In the place of the system's.
+extern "C" int socket(int domain, int type, int protocol) noexcept {
+  static const auto real = reinterpret_cast<int (*)(int, int, int)>(::dlsym(RTLD_NEXT, "socket"));
+  const int made = real(domain, type, protocol), on = 1;
+  if (domain == AF_INET6 && made >= 0 && refused.ipv6_alone)
+    ::setsockopt(made, IPPROTO_IPV6, IPV6_V6ONLY, &on, sizeof on);
+  return made;
+}
+
 extern "C" int bind(int socket, const sockaddr* address, socklen_t length) noexcept {
   static const auto real = reinterpret_cast<int (*)(int, const sockaddr*, socklen_t)>(::dlsym(RTLD_NEXT, "bind"));
   int type = 0;
@@ -69,7 +79,10 @@ using asio::ip::udp;
 
 class EthernetRefused : public ::testing::Test {
  protected:
-  ~EthernetRefused() override { refused.accepts = refused.datagram_binds = 0; }
+  ~EthernetRefused() override {
+    refused.accepts = refused.datagram_binds = 0;
+    refused.ipv6_alone = false;
+  }
 
   static void start(EthernetServer& server) {
     server.on_request = [&server](EthernetServer::Client client, const EthernetPacket&) { server.reply(client, "ok"); };
@@ -146,14 +159,27 @@ TEST_F(EthernetRefused, AClientWaitsForADescriptor) {
 // The port of a server that has closed on its clients is free for the next one.
 TEST_F(EthernetRefused, APortThatHasBeenInUseIsTakenAgain) {
   std::string place;
+  tcp::socket client(io_);  // there when the server goes
   {
     EthernetServer server("127.0.0.1:0");
     start(server);
     place = server.place();
-    tcp::socket client = answered(port_of(server));
+    client = answered(port_of(server));
     server.stop();
   }
   EXPECT_EQ(error_of(place), "no error");
+}
+
+// An asterisk is IPv4 too, whatever the system's habit is.
+TEST_F(EthernetRefused, AnAsteriskIsIpv4WhereIpv6AloneIsTheHabit) {
+  refused.ipv6_alone = true;
+  EthernetServer server("*:0");
+  start(server);
+  answered(port_of(server));
+  udp::socket sender(io_, udp::endpoint(udp::v4(), 0));
+  sender.send_to(asio::buffer(kReady), {asio::ip::address_v4::loopback(), port_of(server)});
+  char reply[4];
+  EXPECT_EQ(receive_some(sender, reply, sizeof reply), 2);
 }
 
 }  // namespace

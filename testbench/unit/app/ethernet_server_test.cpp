@@ -11,6 +11,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -233,6 +234,22 @@ TEST_F(EthernetConnections, NothingIsAskedByOneThatIsGone) {
   io.run();
   EXPECT_EQ(closed, 1);
   EXPECT_EQ(late, 0);
+}
+
+// A reply that is on its way ends with an error then, which is told no second time.
+TEST_F(EthernetConnections, OneThatIsClosedIsClosedOnce) {
+  const auto connection = std::make_shared<EthernetConnection>(std::move(socket), 16);
+  std::vector<std::string> closed;
+  connection->on_request = [&](const EthernetPacket&) { ++asked; };
+  connection->on_close = [&](const std::string& why) { closed.push_back(why); };
+  connection->start();
+  ask();
+  ASSERT_NO_FATAL_FAILURE(run_until_asked(1));
+  connection->reply(std::string(64 << 20, 'x'));
+  io.poll();  // as much of it as the system takes
+  connection->close("enough");
+  io.run();
+  EXPECT_EQ(closed, std::vector<std::string>{"enough"});
 }
 
 }  // namespace
