@@ -73,7 +73,8 @@ class Judge:
                 for path in program.read[target] & wanted:
                     found[path][command[command.index("-c") + 1]] = command
         def of_tests(command):
-            return "/testbench/unit/" in command[command.index("-c") + 1]
+            source = str((self.tree / command[command.index("-c") + 1]).resolve())
+            return all("/testbench/unit/" in file for file in overlay.joined_files(source))
         chosen = {}
         for path, commands in sorted(found.items()):
             own = [c for c in commands.values() if not of_tests(c)]

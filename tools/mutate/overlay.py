@@ -85,6 +85,11 @@ def of_several(source):
     return pathlib.Path(source).parent.name == "Unity"
 
 
+def joined_files(source):
+    """The files that it joins, itself where it joins none."""
+    return re.findall(r'^#include "(.*)"', pathlib.Path(source).read_text(), re.M) if of_several(source) else [source]
+
+
 def unjoined(source, root):
     """The text of such a file, in which the include path says which files it joins."""
     return pathlib.Path(source).read_text().replace(f'"{root}/', '"')

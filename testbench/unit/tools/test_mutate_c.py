@@ -72,6 +72,28 @@ class Kept(unittest.TestCase):
         self.assertEqual(len(hashes), 2)
 
 
+class Readers(unittest.TestCase):
+    def test_a_library_beside_the_tests_reads_a_header_too(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            unity = root / "build/testbench/unit/a/CMakeFiles"
+            texts = {"app/a.h": "", "app/alone.cpp": "", "app/of_library.cpp": "", "testbench/unit/a/a_test.cpp": ""}
+            for number, joined in enumerate(("app/of_library.cpp", "testbench/unit/a/a_test.cpp")):
+                texts[f"build/testbench/unit/a/CMakeFiles/{number}/Unity/u.cxx"] = f'\n#include "{root / joined}"\n'
+            for name, text in texts.items():
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / name).write_text(text)
+            sources = [str(root / "app/alone.cpp"), *(str(unity / f"{n}/Unity/u.cxx") for n in range(2))]
+            commands = {f"{n}.o": ["c++", "-c", source, "-o", f"{n}.o"] for n, source in enumerate(sources)}
+            judge = native.Judge.__new__(native.Judge)
+            judge.root, judge.tree, judge.module = root, root / "build", None
+            judge.programs = {"p": types.SimpleNamespace(readers=lambda _: list(commands), compiles=commands,
+                                                         read=dict.fromkeys(commands, {str(root / "app/a.h")}))}
+            with mock.patch.object(native, "sources_of", return_value=[root / "app/a.h"]):
+                read_by = [c[2] for c in judge.compilations()["app/a.h"]]
+        self.assertEqual(read_by, sources[:2])
+
+
 class Places(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
