@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "systemc/board/bus_read.h"
 #include "systemc/board/bus_sync.h"
 #include "systemc/board/clock_select.h"
 #include "systemc/board/gate_ics.h"
@@ -83,6 +84,32 @@ TEST(BlockEvents, OfTheBusAreForeseenAtEachEdge) {
           EXPECT_EQ(write ? bus.we() : bus.rd(), own && t == made - 1) << "tick " << t;
         }
       }
+}
+
+// D goes with /RD or with another read that falls, not with a write strobe that moves beside the read.
+TEST(BlockEvents, OfAReadAreItsSampleAndItsEnd) {
+  BusRead read;
+  read.reset();
+  read.set_rd(false, 1);
+  EXPECT_FALSE(read.oe());
+  read.take(0x123456, 1, false);
+  EXPECT_TRUE(read.oe());
+  read.set_rd(false, 1);
+  EXPECT_TRUE(read.oe()) << "/RD is still low, and has not fallen again";
+  EXPECT_EQ(read.data(), 0x123456u);
+  read.set_rd(true, 1);
+  EXPECT_FALSE(read.oe());
+  read.set_rd(false, 2);
+  EXPECT_FALSE(read.oe()) << "until there is a sample of this one";
+  read.take(0x654321, 1, false);
+  EXPECT_FALSE(read.oe()) << "of the read before";
+  read.take(0x654321, 2, true);
+  EXPECT_FALSE(read.oe()) << "the on-chip page has no pins";
+  read.take(0x654321, 2, false);
+  EXPECT_TRUE(read.oe());
+  read.reset();
+  EXPECT_FALSE(read.oe());
+  EXPECT_EQ(read.data(), 0u);
 }
 
 // Levels and pins from outside come with the next tick, drivers with the next edge of clk_ref, a conflict when it has
