@@ -184,21 +184,25 @@ TEST_F(EthernetClients, OneThatHasEndedIsAnsweredWhatItHasAsked) {
   EXPECT_TRUE(is_closed(idle));
 }
 
-// One that is gone is told of once; what it is answered then goes nowhere.
+// One that is gone is told of once; what it is answered then goes nowhere, to no sender of datagrams either.
 TEST_F(EthernetClients, OneThatIsGoneIsForgotten) {
-  tcp::socket one = client(), two = client();
-  send(one, request(1));
+  asio::ip::udp::socket sender(io_, asio::ip::udp::endpoint(asio::ip::udp::v4(), 0));
+  sender.send_to(asio::buffer(request(1)), {asio::ip::address_v4::loopback(), port_});
   ASSERT_TRUE(are_asked(1));
-  send(two, request(2));
+  tcp::socket one = client(), two = client();
+  send(one, request(2));
   ASSERT_TRUE(are_asked(2));
+  send(two, request(3));
+  ASSERT_TRUE(are_asked(3));
   one.set_option(asio::socket_base::linger(true, 0));  // reset
   one.close();
   EXPECT_TRUE(comes([this] { return !closed_.empty(); }));
   EXPECT_EQ(server_->clients(), 1u);
-  server_->reply(asked_[0].client, "late");
-  server_->reply(asked_[1].client, "two");
+  server_->reply(asked_[1].client, "late");
+  server_->reply(asked_[2].client, "two");
   EXPECT_EQ(receive(two, 3), "two");
-  EXPECT_EQ(closed_, std::vector<Id>{asked_[0].client});
+  EXPECT_EQ(sender.available(), 0u);
+  EXPECT_EQ(closed_, std::vector<Id>{asked_[1].client});
   EXPECT_TRUE(troubles_.empty());
 }
 
