@@ -50,7 +50,7 @@ double float48_unpack(struct float48 word) {
   int32_t exponent = (int32_t)(word.y & 0xFFFu) - WORD_BIAS + DOUBLE_BIAS;
   /* The mantissa stands for m / 2^35; bring its leading one to bit 52. Unnormalised words are accepted. */
   uint64_t magnitude = (uint64_t)mantissa << 18;
-  while ((magnitude & (1ull << 52)) == 0u && magnitude < (1ull << 52)) {
+  while (magnitude < (1ull << 52)) {
     magnitude <<= 1;
     --exponent;
   }

@@ -210,17 +210,15 @@ double math_tangent(double x, int degrees) {
 static const double odd_parts[] = {1.0 / 1.0,  1.0 / 3.0,  1.0 / 5.0,  1.0 / 7.0,  1.0 / 9.0,  1.0 / 11.0,
                                    1.0 / 13.0, 1.0 / 15.0, 1.0 / 17.0, 1.0 / 19.0, 1.0 / 21.0, 1.0 / 23.0};
 
-/* atan on [0, 1]: two half-angle steps bring the argument below 0.2, then the series. */
-static double arc_series(double x) {
-  double factor = 1.0;
-  for (int i = 0; i < 2; i++) {
-    x = paused(x / paused(1.0 + math_square_root(paused(1.0 + paused(x * x)))));
-    factor *= 2.0;
-  }
-  const double s = paused(x * x);
+/* Tangent of half the angle. */
+static double halved(double x) { return paused(x / paused(1.0 + math_square_root(paused(1.0 + paused(x * x))))); }
+
+/* atan on [0, 1]: a quarter of the angle has a tangent below 0.2, then the series. */
+static double arc_series(double tangent) {
+  const double x = halved(halved(tangent)), s = paused(x * x);
   double sum = 0.0;
   for (int k = 23; k >= 1; k -= 2) sum = paused(odd_parts[k / 2] - paused(s * sum));
-  return paused(paused(factor * x) * sum);
+  return paused(paused(4.0 * x) * sum);
 }
 
 double math_arc_tangent(double x, int degrees) {
