@@ -12,7 +12,6 @@
 #include "firmware/command/variable_commands.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/language/statement.h"
-#include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/pq_variables.h"
 
@@ -160,6 +159,5 @@ error_t command_line(const char* line) {
     error = program_line_commit();
   else
     program_line_abandon();
-  i_hardware_apply_clock_directions();
   return error;
 }

@@ -29,6 +29,9 @@ static error_t size_argument(struct lexer* lx, uint32_t* size) {
   return ERR_NONE;
 }
 
+/* Of as many there is no room. */
+static uint32_t at_most(uint64_t words) { return words > UINT32_MAX ? UINT32_MAX : (uint32_t)words; }
+
 static error_t define_lookahead(struct lexer* lx, uint32_t cs) {
   uint32_t segments, outputs;
   uint32_t segment_words = 2 * axis_definition_motors(cs) + 4;
@@ -38,7 +41,7 @@ static error_t define_lookahead(struct lexer* lx, uint32_t cs) {
   uint64_t words = (uint64_t)segments * segment_words + (uint64_t)outputs * LOOKAHEAD_WORDS_PER_OUTPUT;
   if (segments == 0) return ERR_DATA;
   if (i_table_of_geo_pmac() && lookahead_buffer_is_anywhere()) return ERR_DATA; /* it has one only */
-  const error_t error = region_define(REGION_LOOKAHEAD, cs, words > UINT32_MAX ? UINT32_MAX : (uint32_t)words);
+  const error_t error = region_define(REGION_LOOKAHEAD, cs, at_most(words));
   if (error == ERR_NONE) lookahead_buffer_define(cs, outputs);
   return error;
 }
@@ -46,8 +49,7 @@ static error_t define_lookahead(struct lexer* lx, uint32_t cs) {
 static error_t define_ccbuf(struct lexer* lx, uint32_t cs) {
   uint32_t moves;
   if (size_argument(lx, &moves) != ERR_NONE) return ERR_DATA;
-  uint64_t words = (uint64_t)moves * CCBUF_WORDS_PER_MOVE;
-  return region_define(REGION_CCBUF, cs, words > UINT32_MAX ? UINT32_MAX : (uint32_t)words);
+  return region_define(REGION_CCBUF, cs, at_most((uint64_t)moves * CCBUF_WORDS_PER_MOVE));
 }
 
 static error_t define_rotary(struct lexer* lx, uint32_t cs) {
@@ -70,8 +72,7 @@ static error_t define_gather(struct lexer* lx) {
 static error_t define_tbuf(struct lexer* lx) {
   uint32_t matrices;
   if (size_argument(lx, &matrices) != ERR_NONE) return ERR_DATA;
-  const uint32_t most = UINT32_MAX / TBUF_WORDS_PER_MATRIX;
-  const error_t error = region_define(REGION_TBUF, 0, (matrices < most ? matrices : most) * TBUF_WORDS_PER_MATRIX);
+  const error_t error = region_define(REGION_TBUF, 0, at_most((uint64_t)matrices * TBUF_WORDS_PER_MATRIX));
   if (error == ERR_NONE) axis_matrix_clear();
   return error;
 }

@@ -56,10 +56,8 @@ static error_t read_address(struct lexer* lx, uint32_t* address) {
   int32_t number;
   (void)lexer_accept(lx, ':');
   const error_t error = lexer_integer(lx, &number);
-  if (error != ERR_NONE) return error;
-  if (number < 0 || number > (int32_t)HAL_WORD_MASK) return ERR_DATA;
-  *address = (uint32_t)number;
-  return ERR_NONE;
+  if (error == ERR_NONE) *address = (uint32_t)number; /* one below 0 is beyond the last */
+  return error;
 }
 
 static error_t read_words(struct lexer* lx, form_t form, bool hex) {
@@ -68,7 +66,7 @@ static error_t read_words(struct lexer* lx, form_t form, bool hex) {
   error_t error = read_address(lx, &address);
   if (error == ERR_NONE && lexer_further(lx)) error = lexer_integer(lx, &count);
   if (error != ERR_NONE) return error;
-  if (count < 1 || count > COUNT_LIMIT || address + (uint32_t)count > HAL_WORD_MASK + 1u) return ERR_DATA;
+  if (count < 1 || count > COUNT_LIMIT || address > HAL_WORD_MASK + 1u - (uint32_t)count) return ERR_DATA;
   for (uint32_t i = 0; i < (uint32_t)count; ++i) {
     if (i != 0u) reply_char(' ');
     report_word(form, hex, address + i);

@@ -50,34 +50,30 @@ static error_t cmd_executing(struct lexer* lx) { /* PE */
   return report_trace(&trace);
 }
 
-/* After a one-letter command a letter or digit means a word that is not known, or a program statement. */
-static bool stands_alone(const struct lexer* lx) {
-  char c = *lx->at;
-  return !((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || c == '(');
-}
-
-static error_t not_alone(const struct lexer* lx) {
-  struct lexer word = {lx->at - 1};
-  return statement_starts(word) ? ERR_NEEDS_BUFFER : ERR_DATA;
-}
-
 static error_t cmd_point(struct lexer* lx) { /* B{n} */
   double program;
-  if (lexer_constant(lx, &program) != ERR_NONE) return not_alone(lx);
+  const struct lexer word = {lx->at - 1};
+  if (lexer_constant(lx, &program) != ERR_NONE) return statement_starts(word) ? ERR_NEEDS_BUFFER : ERR_DATA;
   return run_point(session.cs, program);
 }
 
-static error_t cmd_run(struct lexer* lx) { return stands_alone(lx) ? run_start(session.cs, false) : not_alone(lx); }
+static error_t cmd_run(struct lexer* lx) {
+  (void)lx;
+  return run_start(session.cs, false);
+}
 
 static error_t cmd_match(struct lexer* lx) { /* PMATCH */
   (void)lx;
   return run_match(session.cs);
 }
 
-static error_t cmd_step(struct lexer* lx) { return stands_alone(lx) ? run_start(session.cs, true) : not_alone(lx); }
+static error_t cmd_step(struct lexer* lx) {
+  (void)lx;
+  return run_start(session.cs, true);
+}
 
 static error_t control(struct lexer* lx, void (*action)(uint32_t cs)) {
-  if (!stands_alone(lx)) return not_alone(lx);
+  (void)lx;
   action(session.cs);
   return ERR_NONE;
 }
@@ -87,8 +83,9 @@ static error_t cmd_abort(struct lexer* lx) { return control(lx, motors_abort); }
 
 static error_t cmd_abort_and_run(struct lexer* lx) { /* ABR{n} */
   double program = 0.0;
+  const char c = *lx->at;
   const bool has_number = lexer_constant(lx, &program) == ERR_NONE;
-  if (!has_number && !stands_alone(lx)) return not_alone(lx);
+  if (!has_number && ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || c == '(')) return ERR_DATA;
   return restart_begin(session.cs, has_number, program);
 }
 

@@ -91,11 +91,11 @@ uint32_t reply_line_count(void) { return line_count; }
 
 bool reply_line_is_open(void) { return line_open; }
 
+/* Numbers have two digits (firmware:6.4). */
 static void error_text(error_t error) {
-  reply_text("ERR");
-  reply_char((char)('0' + error / 100));
-  reply_char((char)('0' + error / 10 % 10));
-  reply_char((char)('0' + error % 10));
+  for (const char* text = "ERR0"; *text != '\0'; ++text) reply_byte((uint8_t)*text);
+  reply_byte((uint8_t)('0' + error / 10));
+  reply_byte((uint8_t)('0' + error % 10));
 }
 
 /* The code of a command's error is the number itself. That of a program's command would end the host's own answer: it
@@ -103,7 +103,7 @@ static void error_text(error_t error) {
 static void report_error_in_lines(error_t error) {
   if (recipient == REPLY_TO_DPRAM) {
     const uint32_t number = (uint32_t)error;
-    reply_lines.end(DPRAM_RESPONSE_ERROR | number / 100u << 8 | number / 10u % 10u << 4 | number % 10u);
+    reply_lines.end(DPRAM_RESPONSE_ERROR | number / 10u << 4 | number % 10u);
     return;
   }
   error_text(error);
@@ -123,14 +123,7 @@ void reply_error(error_t error) {
   if (!tagged && style == 3) send(CARRIAGE_RETURN);
   if (numbered && has_line_feeds()) send(LINE_FEED);
   if (tagged) send(TAG);
-  if (numbered) {
-    send('E');
-    send('R');
-    send('R');
-    send((uint8_t)('0' + error / 100));
-    send((uint8_t)('0' + error / 10 % 10));
-    send((uint8_t)('0' + error % 10));
-  }
+  if (numbered) error_text(error);
   if (numbered || tagged) send(CARRIAGE_RETURN);
 }
 
