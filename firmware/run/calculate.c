@@ -49,7 +49,7 @@ static void stop_with_error(uint32_t cs) {
   } else if (p->x.at.reader.rotary && p->x.at.begun) {
     (void)rotary_consume(cs, 1);
   }
-  s->pending_axes = 0;
+  motion_program_forget_line(cs);
   if (p->x.at.reader.rotary)
     motion_program_drop_line(p);
   else
@@ -142,15 +142,12 @@ static bool calculate_word(uint32_t cs) {
     return false;
   }
   if (executed == EXECUTED_LINE) line_ends(cs);
-  if (executed == EXECUTED_LINE || executed == EXECUTED_END) s->sets_normal = false;
   p->under_way = executed == EXECUTED_WORD && !(of_motion && stops_behind(s, &in));
-  if ((executed == EXECUTED_LINE || executed == EXECUTED_END) && s->pending_axes != 0) {
-    if (motion_plan_line(cs) == EXECUTED_ERROR) executed = EXECUTED_ERROR;
-  } else if (executed == EXECUTED_LINE) {
-    s->sets_position = false; /* PSET without axes */
-    s->pending_vectors = 0;
-  } else if (executed == EXECUTED_END && !calls_return(p)) {
-    end(cs);
+  if (executed == EXECUTED_LINE || executed == EXECUTED_END) {
+    const bool ends = executed == EXECUTED_END && s->pending_axes == 0; /* else it comes again */
+    if (s->pending_axes != 0 && motion_plan_line(cs) == EXECUTED_ERROR) executed = EXECUTED_ERROR;
+    motion_program_forget_line(cs); /* PSET, I, J and K without axes too */
+    if (ends && !calls_return(p)) end(cs);
   }
   if (s->planned != moves) {
     planned(cs);
@@ -171,8 +168,8 @@ static bool settle(uint32_t cs) {
   segment_start_of(cs, position);
   motion_program_drop_line(&motion_programs[cs]);
   synchronous_forget(cs);
-  s->pending_axes = s->pending_triggers = s->pending_velocities = s->pending_vectors = 0;
-  s->may_join = s->sets_position = s->sets_normal = false;
+  motion_program_forget_line(cs);
+  s->may_join = false;
   s->corner = CORNER_NONE;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     s->position[axis] = position[axis];
@@ -194,7 +191,6 @@ static bool settle(uint32_t cs) {
 static void fail(uint32_t cs, enum run_time_error cause) {
   struct coordinate_system* s = &coordinate_systems[cs];
   system_motors_ramp(cs);
-  s->failure = RUN_TIME_NONE;
   if (cause != RUN_TIME_NONE) s->error = cause;
   s->running = s->quit = s->stepping = s->matching = false;
   s->settling = true;
@@ -218,7 +214,6 @@ static void match(uint32_t cs) {
     s->error = s->failure;
     s->match_failed = !found;
   }
-  s->failure = RUN_TIME_NONE;
   s->matching = false;
 }
 

@@ -53,7 +53,7 @@ static bool split_code(const struct instruction* in, uint32_t* program, uint32_t
   const uint32_t hundreds = (uint32_t)in->value / CODES_A_PROGRAM;
   *program = FIRST_CODE_PROGRAM + CODE_PROGRAM_STEP * hundreds + (in->number - KEY_G);
   *label = (uint32_t)((in->value - (double)(hundreds * CODES_A_PROGRAM)) * LABELS_A_CODE + 0.5);
-  return *program <= FIXED_PROG_LIMIT;
+  return true;
 }
 
 static bool is_code(const struct instruction* in) { return in->number >= KEY_G && in->number <= KEY_D; }
@@ -69,7 +69,6 @@ static enum executed not_found(struct motion_program* p, uint32_t program, enum 
 static enum executed call(struct motion_program* p, uint32_t program, uint32_t label, bool has_statement) {
   uint32_t offset;
   if (p->depth == CALL_DEPTH) return executor_fail(&p->x, RUN_TIME_DEPTH);
-  if (program == 0) return executor_fail(&p->x, RUN_TIME_PROGRAM);
   const enum reader_result found = calls_find(program, label, &offset);
   if (found != READER_WORD) return not_found(p, program, found);
   if (has_statement)

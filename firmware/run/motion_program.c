@@ -5,6 +5,12 @@
 
 struct motion_program motion_programs[COORDINATE_SYSTEMS];
 
+void motion_program_forget_line(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  s->pending_axes = s->pending_triggers = s->pending_velocities = s->pending_vectors = 0;
+  s->sets_position = s->sets_normal = false;
+}
+
 void motion_program_point(uint32_t cs, bool rotary, uint32_t number, uint32_t offset) {
   struct motion_program* p = &motion_programs[cs];
   if (rotary)
@@ -12,8 +18,8 @@ void motion_program_point(uint32_t cs, bool rotary, uint32_t number, uint32_t of
   else
     reader_fixed(&p->x.at.reader, FIXED_PROG, number, offset);
   executor_begin(&p->x, cs);
-  p->x.at.line = reader_offset(&p->x.at.reader);
   p->depth = 0;
+  motion_program_forget_line(cs);
   p->in_block = p->under_way = p->reading = p->asks_time = p->labelled = p->prelude.on = false;
 }
 

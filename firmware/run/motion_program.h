@@ -13,8 +13,8 @@ struct motion_program {
   uint32_t depth; /* calls under way */
   bool reading;   /* READ stands at its caller's values; its own place is kept in: */
   struct program_position reader;
-  uint32_t axes;      /* offset of the statement that gave the first target of the move being collected */
-  uint8_t axes_loops; /* x.at.loop_count there: the line's end has left one */
+  uint32_t move;      /* offset of the statement with which the move being collected begins */
+  uint8_t move_loops; /* x.at.loop_count there: the line's end has left one */
   bool in_block;      /* between BLOCKSTART and BLOCKSTOP */
   bool asks_time;     /* MOVETIME: of the next move */
   bool labelled;      /* nothing but labels of the line has been executed */
@@ -32,6 +32,7 @@ extern struct motion_program motion_programs[COORDINATE_SYSTEMS];
 
 void motion_program_point(uint32_t cs, bool rotary, uint32_t number, uint32_t offset); /* nothing of it is begun */
 void motion_program_restart(uint32_t cs);                                              /* the same once more */
+void motion_program_forget_line(uint32_t cs);                        /* what has been collected of one */
 void motion_program_end_read(struct motion_program* p);              /* back from the caller's values, if it is there */
 void motion_program_drop_line(struct motion_program* p);             /* what is left of a begun line is lost */
 void motion_program_trace(uint32_t cs, struct program_trace* trace); /* the line under way */

@@ -30,14 +30,19 @@ static void set_rate(uint32_t cs, uint32_t rate, double value) {
   if (rate == RATE_TM) coordinate_systems[cs].time_mode = true;
 }
 
+/* Axes, I, J, K and R: an error in the end leaves a fixed program at the first of them. */
+static void begin_move(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  struct motion_program* p = &motion_programs[cs];
+  if ((s->pending_axes | s->pending_vectors) != 0) return;
+  p->move = p->x.at.statement;
+  p->move_loops = p->x.at.loop_count;
+}
+
 static void set_axis(uint32_t cs, uint32_t axis, double value) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  struct motion_program* p = &motion_programs[cs];
-  if (s->pending_axes == 0) {
-    s->by_segments = plan_by_segments(cs);
-    p->axes = p->x.at.statement;
-    p->axes_loops = p->x.at.loop_count;
-  }
+  begin_move(cs);
+  if (s->pending_axes == 0) s->by_segments = plan_by_segments(cs);
   const bool incremental = !s->sets_position && ((s->incremental >> axis) & 1u) != 0;
   if (incremental) {
     const double way = value + s->carry[axis], from = axis_matrix_programmed(cs, axis);
@@ -69,8 +74,8 @@ enum executed motion_plan_line(uint32_t cs) {
   motion_program_trace(cs, &coordinate_systems[cs].line);
   const enum run_time_error error = plan_line(cs);
   if (error == RUN_TIME_NONE) return EXECUTED_WORD;
-  p->x.at.statement = p->axes; /* a fixed program stays there: all of the move is met again, in the loops of its line */
-  p->x.at.loop_count = p->axes_loops;
+  p->x.at.statement = p->move; /* a fixed program stays there: all of the move is met again, in the loops of its line */
+  p->x.at.loop_count = p->move_loops;
   return executor_fail(&p->x, error);
 }
 
@@ -160,6 +165,7 @@ static enum executed arc_vector(uint32_t cs, uint32_t which, double value) {
     return executor_pass(&p->x);
   }
   if (s->mode != MODE_CIRCLE1 && s->mode != MODE_CIRCLE2) return EXECUTED_ERROR;
+  begin_move(cs);
   s->pending_vector[which] = value;
   s->pending_vectors |= 1u << which;
   return executor_pass(&p->x);

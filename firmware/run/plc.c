@@ -35,7 +35,6 @@ static void begin(uint32_t number) {
 }
 
 void plc_initialize(void) {
-  for (uint32_t number = 0; number < FIXED_PLC_COUNT; number++) begin(number);
   turn = 0;
   plc_control_initialize();
 }

@@ -1,0 +1,172 @@
+// A line that a program was stopped in, by a run-time error, an abort or a stop at a statement that waits: what has
+// been collected of it is nothing of the next program (firmware:4.10, firmware:7.10).
+#include "testbench/unit/firmware_platform/fake_tasks.h"
+#include "testbench/unit/firmware_program/motion_program.h"
+
+namespace {
+
+using namespace motion_program;
+
+class BegunLines : public MotionProgram {
+ protected:
+  static coordinate_system& cs() { return coordinate_systems[0]; }
+  // Behind it the queue of SENDs has no room for a text of 200 characters (firmware:6.7/9), the background does not
+  // run.
+  static Lines waits_at(const std::string& begun, const std::string& rest = "") {
+    const std::string send = "SEND\"" + std::string(200, 'x') + "\"";
+    return {"TM10TA2TS0", send, send, send, send, begun + " " + send + " " + rest};
+  }
+  static void wait(const Lines& lines) {
+    store(1, lines);
+    ASSERT_EQ(host("B1R"), "");
+    platform::servo_ticks(30);
+    ASSERT_TRUE(run_is_running(0));
+    ASSERT_FALSE(text_queue_is_empty(&send_queues[PROGRAM_REAL_TIME]));
+  }
+  static void read_all() {
+    platform::background(20);
+    platform::sent();
+  }
+  static void nothing_is_left() {
+    EXPECT_EQ(cs().pending_axes, 0u);
+    EXPECT_EQ(cs().pending_velocities, 0u);
+    EXPECT_EQ(cs().pending_triggers, 0u);
+    EXPECT_EQ(cs().pending_vectors, 0u);
+    EXPECT_FALSE(cs().sets_position);
+    EXPECT_FALSE(cs().sets_normal);
+  }
+  // Y3 is made as of a program that is the first one: one move of Y alone, with an arc vector that is none of a plane.
+  static void next_program_is_whole(double x_before) {
+    store(2, {"LINEAR TM10TA2TS0", "Y3", "CIRCLE1", "J5 Y4", "LINEAR"});
+    const std::uint32_t moves = cs().planned;
+    const double normal = cs().normal[1];
+    ASSERT_EQ(host("B2"), "");
+    nothing_is_left();
+    ASSERT_EQ(host("R"), "");
+    ASSERT_TRUE(finish());
+    EXPECT_FALSE(error());
+    EXPECT_EQ(cs().planned - moves, 2u) << "both lines move";
+    EXPECT_EQ(x(), x_before);
+    EXPECT_EQ(cs().position[AXIS_Y], 4.0);
+    EXPECT_EQ(cs().normal[1], normal);
+  }
+};
+
+const char* const kBegun[] = {
+    "X5",         "PSET",          "PSET X5", "NORMAL",   "NORMAL K1", "PVT100 X5:7", "PVT100 X5:7 Y1:2",
+    "CIRCLE1 I5", "CIRCLE1 R5 X5", "INC(X) X5",  "X5 NORMAL"};
+
+TEST_F(BegunLines, ARunTimeErrorForgetsIt) {
+  for (const char* begun : kBegun) {
+    SCOPED_TRACE(begun);
+    platform::power_up();
+    run({"TM10TA2TS0", std::string(begun) + " CC1"});
+    ASSERT_TRUE(error());
+    nothing_is_left();
+    next_program_is_whole(0.0);
+  }
+}
+
+TEST_F(BegunLines, AnAbortForgetsIt) {
+  for (const char* begun : kBegun) {
+    SCOPED_TRACE(begun);
+    platform::power_up();
+    wait(waits_at(begun));
+    ASSERT_EQ(host("A"), "");
+    platform::servo_ticks(9);
+    nothing_is_left();
+    read_all();
+    next_program_is_whole(0.0);
+  }
+}
+
+// With axes the line would be ended first.
+TEST_F(BegunLines, AnotherProgramBehindAStopForgetsIt) {
+  for (const char* begun : {"PSET", "NORMAL", "NORMAL K1", "CIRCLE1 I5", "CIRCLE1 R5"}) {
+    SCOPED_TRACE(begun);
+    platform::power_up();
+    wait(waits_at(begun));
+    ASSERT_EQ(host("Q"), "");
+    platform::servo_ticks(9);
+    ASSERT_FALSE(run_is_running(0));
+    read_all();
+    next_program_is_whole(0.0);
+  }
+}
+
+TEST_F(BegunLines, TheSameProgramGoesOnInItBehindAStop) {
+  wait(waits_at("PSET", "X7"));
+  ASSERT_EQ(host("Q"), "");
+  platform::servo_ticks(9);
+  ASSERT_FALSE(run_is_running(0));
+  read_all();
+  const std::uint32_t moves = cs().planned;
+  ASSERT_EQ(host("R"), "");
+  ASSERT_TRUE(finish());
+  EXPECT_EQ(x(), 7.0);
+  EXPECT_EQ(cs().planned, moves) << "PSET X7 moves nothing";
+}
+
+// Those of a line end with it, by RETURN too.
+TEST_F(BegunLines, ALineEndsWithItsReturn) {
+  store(7, {"PSET RETURN"});
+  store(8, {"NORMAL RETURN"});
+  store(9, {"CIRCLE1 I5 RETURN"});
+  for (const char* call : {"CALL7", "CALL8", "CALL9", "PSET", "NORMAL", "CIRCLE1 I5"}) {
+    SCOPED_TRACE(call);
+    platform::power_up();
+    store(7, {"PSET RETURN"});
+    store(8, {"NORMAL RETURN"});
+    store(9, {"CIRCLE1 I5 RETURN"});
+    store(1, {"TM10TA2TS0", call, "WHILE(P1=0) WAIT", "LINEAR X7"});
+    const std::uint32_t moves = cs().planned;
+    ASSERT_EQ(host("P1=0 B1R"), "");
+    platform::servo_ticks(30);
+    nothing_is_left();
+    ASSERT_EQ(host("P1=1"), "");
+    ASSERT_TRUE(finish());
+    EXPECT_EQ(cs().planned - moves, 1u);
+    EXPECT_EQ(x(), 7.0);
+  }
+}
+
+// motion:5.6/5: a step by Isx53 bit 0 goes to the end of the line, whatever a PSET in it has done already.
+TEST_F(BegunLines, AStepOfALineGoesOnBehindPset) {
+  store(1, {"PSET X5 WAIT P1=1", "P2=1"});
+  ASSERT_EQ(host("I5153=1 B1S"), "");
+  ASSERT_TRUE(finish());
+  EXPECT_EQ(x(), 5.0);
+  EXPECT_EQ(host("P1 P2"), "1|0");
+}
+
+// PE names the line that executes (firmware:4.9/2); where a program is entered behind its begin, that is the label.
+TEST_F(BegunLines, OfALineThatIsEnteredAtALabelPeShowsTheLabel) {
+  const Lines lines = {"GOTO10", "P1=1 N10 TM1000 X5"};  // 0, 1, 2, 3, 4
+  store(1, lines);
+  store(7, {"P1=1", "CALL1.0001"});
+  for (const auto& [start, place] : {std::pair{"B1", "P1:2"}, {"B1.0001", "P1:2"}, {"B7", "P7:1>P1.2"}}) {
+    SCOPED_TRACE(start);
+    ASSERT_EQ(host(std::string(start) + "R"), "");
+    platform::servo_ticks(12);
+    ASSERT_TRUE(cs().active);
+    EXPECT_EQ(host("PE"), place);
+    ASSERT_EQ(host("A"), "");
+    platform::servo_ticks(9);
+  }
+}
+
+// A line behind ELSE is that of the ELSE.
+TEST_F(BegunLines, OfALineWithElsePeShowsIt) {
+  store(1, {"TM1000TA2TS0 P1=1", "IF(P1=0) X1", "ELSE X2"});  // 4 words, 4 and 1 of the condition and X1
+  ASSERT_EQ(host("B1"), "");
+  const std::string text = host("LIST PROG 1,0");
+  const std::size_t line = text.find(":ELSE");
+  ASSERT_NE(line, std::string::npos);
+  const std::size_t from = text.rfind('|', line) + 1;
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(12);
+  ASSERT_TRUE(cs().active);
+  EXPECT_EQ(host("PE"), "P1:" + text.substr(from, line - from));
+}
+
+}  // namespace
