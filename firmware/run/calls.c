@@ -33,9 +33,9 @@ enum reader_result calls_find(uint32_t program, uint32_t label, uint32_t* offset
   struct program_reader reader;
   word48_t word;
   enum reader_result found;
-  reader_fixed(&reader, FIXED_PROG, program, 0);
   *offset = 0;
-  if (label == 0) return reader_check(&reader);
+  if (label == 0) return reader_check(FIXED_PROG, program);
+  reader_fixed(&reader, FIXED_PROG, program, 0);
   for (; (found = reader_peek(&reader, 0, &word)) == READER_WORD; slice_pause()) {
     const struct instruction in = word_decode(word);
     if (is_label(&in, label)) {

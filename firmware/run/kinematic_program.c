@@ -37,10 +37,8 @@ enum run_time_error kinematic_program_execute(uint32_t cs, enum fixed_kind kind)
 }
 
 static error_t check(uint32_t cs, enum fixed_kind kind) {
-  struct program_reader reader;
   if (fixed_program_find(kind, cs) == 0) return ERR_NO_PROGRAM;
-  reader_fixed(&reader, kind, cs, 0);
-  return reader_check(&reader) != READER_BAD ? ERR_NONE : ERR_BAD_PROGRAM;
+  return reader_check(kind, cs) != READER_BAD ? ERR_NONE : ERR_BAD_PROGRAM;
 }
 
 static bool needs_inverse(uint32_t cs) {

@@ -87,7 +87,7 @@ static bool step(uint32_t number) {
 
 static bool is_paused_here(uint32_t number) {
   const struct executor* x = &plcs[number].x;
-  return !x->at.begun && !x->condition.open && plc_is_paused(number);
+  return !x->at.begun && plc_is_paused(number);
 }
 
 /* The program being entered is not executed, even if it is enabled again before CLOSE. */

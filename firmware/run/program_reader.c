@@ -37,9 +37,9 @@ static enum reader_result look(struct program_reader* reader) {
   return READER_WORD;
 }
 
-enum reader_result reader_check(struct program_reader* reader) {
-  word48_t word;
-  return reader_peek(reader, 0, &word);
+enum reader_result reader_check(enum fixed_kind kind, uint32_t number) {
+  struct program_reader reader = {.kind = (uint16_t)kind, .number = number, .generation = GENERATION_NONE};
+  return look(&reader);
 }
 
 enum reader_result reader_peek(struct program_reader* reader, uint32_t ahead, word48_t* word) {

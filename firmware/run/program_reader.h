@@ -25,7 +25,7 @@ struct program_reader {
 
 void reader_rotary(struct program_reader* reader, uint32_t cs);
 void reader_fixed(struct program_reader* reader, enum fixed_kind kind, uint32_t number, uint32_t offset);
-enum reader_result reader_check(struct program_reader* reader); /* can it be executed? END, BAD or LATER, as peek */
+enum reader_result reader_check(enum fixed_kind kind, uint32_t number); /* can it be executed? BAD or LATER: no */
 enum reader_result reader_peek(struct program_reader* reader, uint32_t ahead, word48_t* word);
 bool reader_advance(struct program_reader* reader,
                     uint32_t count);                  /* behind words that were seen; true: a line's end */

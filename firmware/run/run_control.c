@@ -105,11 +105,9 @@ static bool motion_buffer_open(void) { return open_buffer_kind() == OPEN_FIXED &
 /* ERR015, ERR016. The structure of a fixed program is looked at here, not when it is already running. */
 static error_t check_program(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  struct program_reader reader;
   if (motion_buffer_open() || s->pointer == POINTER_NONE) return ERR_NO_PROGRAM;
   if (s->pointer == POINTER_ROTARY) return rotary_buffers[cs].size != 0 ? ERR_NONE : ERR_NO_PROGRAM;
-  reader_fixed(&reader, FIXED_PROG, s->fixed_program, 0);
-  return s->running || reader_check(&reader) != READER_BAD ? ERR_NONE : ERR_BAD_PROGRAM;
+  return s->running || reader_check(FIXED_PROG, s->fixed_program) != READER_BAD ? ERR_NONE : ERR_BAD_PROGRAM;
 }
 
 /* A PMATCH that stands in a slice: what it finds is of motors as they were resolved for it. */
@@ -285,7 +283,6 @@ void run_stop_on_path(uint32_t cs) {
     run_hold(cs);
   } else if (!segment_stands(cs)) { /* there its motors may be on their way: it goes on standing */
     segment_order(cs, LOOKAHEAD_STOP);
-    s->must_return = true;
   }
   hal_unmask(state);
 }

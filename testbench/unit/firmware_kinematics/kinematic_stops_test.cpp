@@ -147,6 +147,47 @@ TEST_F(KinematicStops, ALongOneEnds) {
   EXPECT_NEAR(hand().x, 300, 1e-3);
 }
 
+// Where the clock stands, words count, 5000 of them: one, then 3, 4 and 1 a turn, so the last is the end of an
+// assignment.
+TEST_F(KinematicStops, WordsCountWhereTheClockStands) {
+  fit_arm();
+  program("FORWARD", {"P8=8", "WHILE(1=1)", "P9=P9+1", "ENDWHILE"});
+  ASSERT_EQ(host("P9=0 &1PMATCH"), "");
+  platform::servo_ticks(600);
+  EXPECT_EQ(cs().error, RUN_TIME_KINEMATIC);
+  EXPECT_EQ(p(9), (5000 - 1 + 1) / 8);
+}
+
+// A PMATCH that waits when R comes is what R does itself: the forward program runs once for both.
+TEST_F(KinematicStops, AStartTakesThePlaceOfAPmatchThatWaits) {
+  unsigned before = 0, behind = 0;
+  for (unsigned n = 1; n < 60; ++n) {
+    platform::power_up();
+    fit_arm();
+    store({"DWELL100"});
+    ASSERT_EQ(host("&1B1 P4=0 PMATCH"), "");
+    static unsigned left;
+    static bool ran, waited;
+    left = n;
+    fake_hal_on_unmask([] {
+      if (--left != 0) return;
+      fake_hal_on_unmask(nullptr);
+      ran = run_is_running(0);
+      platform::real_time();
+      waited = p(4) != 0;
+    });
+    const firmware_error_t error = run_start(0, false);
+    fake_hal_on_unmask(nullptr);
+    if (left != 0 || ran) break;
+    EXPECT_EQ(error, ERR_NONE);
+    platform::servo_ticks(30);
+    EXPECT_EQ(p(4), waited ? 2 : 1) << n;
+    (waited ? before : behind)++;
+  }
+  EXPECT_GT(before, 0u);
+  EXPECT_GT(behind, 0u) << "R has begun to look at the motors anew";
+}
+
 // Of the time of slices, one after the other: the same 800 words with looks at the clock that take 20 and 3000 cycles.
 TEST_F(KinematicStops, TimeCounts) {
   for (const unsigned cycles : {20u, 3000u}) {

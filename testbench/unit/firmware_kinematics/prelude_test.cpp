@@ -69,6 +69,17 @@ TEST_F(Prelude, BehindALabelOnly) {
   store(500, {"P1=P1+1", "RETURN"});
   run({"F1000", "PRELUDE1 CALL500", "N10 X1", "N20N30 X2", "P2=1 X3", "IF(P2=1) X4", "LINEAR X5"});
   EXPECT_EQ(p(1), 2) << "behind something else the move has none";
+  ASSERT_EQ(host("P1=0 M1->*"), "");
+  std::string plcs = "DISABLEPLC";  // their mask is the number of the statement N
+  for (unsigned n = 0; n < 32; ++n)
+    if ((static_cast<unsigned>(KEY_N) >> n & 1u) != 0) plcs += (plcs.back() == 'C' ? "" : ",") + std::to_string(n);
+  for (const std::string& other : Lines{plcs, "S5", "N40 S5", "S5 N40", "N40 P2=1", "F900", "N40 F900", "M1==1", "WAIT",
+                                        "BLOCKSTART", "SEND\"\"", "N40 ABS", "ENABLEPLC1", "P2=1 N40"}) {
+    run({"F1000", "PRELUDE1 CALL500", other + " X2", "X5"});
+    EXPECT_EQ(p(1), 1) << other;
+    EXPECT_EQ(x(), 5);
+    ASSERT_EQ(host("P1=0"), "");
+  }
   EXPECT_EQ(x(), 5);
 }
 

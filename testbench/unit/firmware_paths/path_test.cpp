@@ -64,4 +64,32 @@ TEST_F(PathErrors, AFeedrateOfZeroIsOneWithAndWithoutSegments) {
     }
 }
 
+// firmware:7.5/11: all of the move is met again, its I, J, K or R too, be they before its axes.
+TEST_F(PathErrors, BehindAnErrorTheArcIsMetAgain) {
+  Lines lead;
+  for (const char* line : {"J0 I5 X10", "X10 J0 I5", "R5 X10", "J0 X10 I5"}) {
+    SCOPED_TRACE(line);
+    platform::power_up();
+    fit({"1000X", "1000Y"});
+    lead.emplace_back("P1=1 P2=2 P3=3 P4=4 P5=5 P6=6");  // each at a place of its own
+    Lines lines = lead;
+    lines.insert(lines.end(), {"INC TA20 TS0 F0 CIRCLE1", line});
+    store(lines);
+    ASSERT_EQ(host("I5113=10 I5190=1000 B1R"), "");
+    platform::servo_ticks(ticks_of(100));
+    ASSERT_EQ(host("RY$2014"), "8");
+    ASSERT_EQ(motors[0].trajectory, 0);
+    ASSERT_EQ(host("I5189=50 R"), "");
+    double highest = 0;
+    for (int i = 0; i < 3000 && run_is_running(0); ++i) {
+      platform::servo_ticks(1);
+      highest = std::max(highest, at(2));
+    }
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(host("RY$2014"), "0");
+    EXPECT_EQ(at(1), 10000);
+    EXPECT_NEAR(highest, 5000, 100) << "half a circle of radius 5, clockwise";
+  }
+}
+
 }  // namespace

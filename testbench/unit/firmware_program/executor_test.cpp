@@ -20,7 +20,8 @@ class Executor : public MotionProgram {
   void load(const Lines& lines) {
     store(1, lines);
     reader_fixed(&x_.at.reader, FIXED_PROG, 1, 0);
-    ASSERT_EQ(reader_check(&x_.at.reader), READER_WORD);
+    word48_t word;
+    ASSERT_EQ(reader_peek(&x_.at.reader, 0, &word), READER_WORD);
     executor_begin(&x_, 0);
   }
   // All of it but the reader as nothing leaves it.

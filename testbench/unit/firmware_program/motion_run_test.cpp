@@ -3,6 +3,8 @@
 #include "testbench/unit/firmware_platform/fake_interrupts.h"
 #include "testbench/unit/firmware_program/motion_program.h"
 
+extern "C" bool synchronous_waits(void);
+
 namespace {
 
 using namespace motion_program;
@@ -85,6 +87,22 @@ TEST_F(MotionProgram, SynchronousAssignmentsAreMadeWhenTheNextMoveStarts) {
   ASSERT_TRUE(finish());
   platform::real_time();
   EXPECT_EQ(host("M1"), "9") << "no move comes any more";
+}
+
+// One that waits for its move at a reset is made by no program behind it.
+TEST_F(MotionProgram, AResetForgetsAssignmentsThatWait) {
+  store(1, {"TM4000TA10TS0", "X1", "M1==5 X2"});
+  store(2, {"M2==7"});
+  ASSERT_EQ(host("M1->X:$10F0,0,24 M2->X:$10F1,0,24 M1=0 M2=0 SAVE B1R"), "");
+  platform::servo_ticks(30);
+  ASSERT_TRUE(coordinate_systems[0].next_valid);
+  ASSERT_TRUE(synchronous_waits());
+  platform::reset();
+  EXPECT_FALSE(synchronous_waits());
+  ASSERT_EQ(host("M1=0 M2=0 B2R"), "");
+  ASSERT_TRUE(finish());
+  platform::real_time();
+  EXPECT_EQ(host("M1 M2"), "0|7");
 }
 
 // 0.875 & 1.75, 2.5 | 0.25, 2.5 ^ 0.75 (firmware:1.7/2).

@@ -4,6 +4,7 @@
 extern "C" {
 #include "firmware/run/plc.h"
 #include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 }
 
 namespace {
@@ -168,6 +169,65 @@ TEST_F(Plc, PausedPlcGoesOnWhereItWas) {
   EXPECT_EQ(host("P1 P2"), "3|1") << "a disabled one is not resumed";
 }
 
+// Whatever stands behind its PAUSE, a statement of one word too, is for RESUME.
+TEST_F(Plc, PausedPlcExecutesNothingBehindItsPause) {
+  load(1, {"PAUSE PLC 1", "P2=2", "P3=3"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1"), "");
+  background(3);
+  EXPECT_EQ(host("P2 P3"), "0|0");
+  ASSERT_EQ(host("RESUME PLC 1"), "");
+  background(1);
+  EXPECT_EQ(host("P2 P3"), "2|3");
+}
+
+// PLC 1 paused from above at the nth time that its first scan lets interrupts come; false: that is not within the scan.
+bool paused_at(unsigned n) {
+  static unsigned left;
+  left = n;
+  fake_hal_on_unmask([] {
+    if (--left != 0) return;
+    fake_hal_on_unmask(nullptr);
+    plc_pause(1u << 1);
+  });
+  background(1);
+  fake_hal_on_unmask(nullptr);
+  background(2);
+  return left == 0;
+}
+
+// PAUSE stops behind a statement (firmware:7.2), and an IF goes as far as its AND.
+TEST_F(Plc, APauseWithinAStatementLetsItEnd) {
+  unsigned within = 0;
+  bool begun = false;
+  for (unsigned n = 1; n < 60; ++n) {
+    platform::power_up();
+    load(1, {"P3=1+M1+M1+M1+M1+M1+M1+M1+M1", "P4=1", "P5=1"});
+    ASSERT_EQ(host("M1->D:$10F0 I5=2 ENABLE PLC 1"), "");
+    if (!paused_at(n)) break;
+    EXPECT_TRUE(p(3) == 1.0 || !begun) << n;
+    begun = p(3) == 1.0;
+    if (begun && p(4) == 0.0) ++within;
+    const double end = p(3) + p(4) + p(5);
+    ASSERT_EQ(host("RESUME PLC 1"), "");
+    background(1);
+    EXPECT_EQ(host("P3..5"), "1|1|1") << n << " behind " << end;
+  }
+  EXPECT_GE(within, 8u) << "each look at M1 is a place";
+
+  unsigned between = 0;
+  for (unsigned n = 1; n < 60; ++n) {
+    platform::power_up();
+    load(1, {"P2=1", "IF(M1=0)", "AND(P5=0)", "P3=1", "ENDIF", "P4=1"});
+    ASSERT_EQ(host("M1->D:$10F0 I5=2 ENABLE PLC 1"), "");
+    if (!paused_at(n)) break;
+    if (p(2) != 1.0 || p(3) != 0.0) continue;
+    ASSERT_EQ(host("P5=1 RESUME PLC 1"), "");
+    background(1);
+    between += p(3) == 1.0 ? 1u : 0u;
+  }
+  EXPECT_GE(between, 1u) << "the AND was looked at before the pause";
+}
+
 TEST_F(Plc, PlcsControlEachOtherByListsAndRanges) {
   for (const int n : {1, 2, 3, 4}) load(n + 10, {"P" + std::to_string(n) + "=P" + std::to_string(n) + "+1"});
   load(1, {"IF(P10=1)", "DISABLE PLC 11..12,14", "P10=0", "ENDIF", "IF(P10=2)", "ENABLE PLC 11,12", "PAUSE PLC 13",
@@ -228,6 +288,49 @@ TEST_F(Plc, AddressesAreTakenFromVariables) {
   EXPECT_EQ(motor_of("1"), "1\r");
   for (const char* none : {"0", "33", "0.9", "-1", "1000000000"}) EXPECT_EQ(motor_of(none), "1\r") << none;
   EXPECT_EQ(motor_of("3.99"), "3\r") << "the whole part";
+  ASSERT_EQ(host("Q2=0"), "");
+  load(3, {"ADR&P402", "Q2=Q2+1"});
+  for (const char* value : {"16", "17", "1", "0", "0.9", "16.9", "-1"}) {
+    ASSERT_EQ(host(std::string("DISABLE PLC 3 P402=") + value + " ENABLE PLC 3"), "");
+    background(1);
+  }
+  EXPECT_EQ(q_variable_read(15, 2), 2.0) << "16 and 16.9";
+  EXPECT_EQ(q_variable_read(0, 2), 5.0) << "&1 is what it is without";
+}
+
+// Y:$3100 to Y:$311F: bit 22 of each that does not run, from a start on.
+TEST_F(Plc, EachPlcHasItsWordOfStatus) {
+  for (const int n : {0, 3, 31}) load(n, {"P1=P1+1"});
+  ASSERT_EQ(host("SAVE"), "");
+  const auto expect_running = [](std::uint32_t plcs) {
+    for (unsigned n = 0; n < 32; ++n) EXPECT_EQ(*hal_y(0x3100 + n), (plcs >> n & 1u) != 0 ? 0u : 1u << 22) << n;
+    EXPECT_EQ(plc_enabled(), plcs);
+  };
+  expect_running(0);
+  for (unsigned n = 0; n < 32; ++n) *hal_y(0x3100 + n) = 0x123;  // what a host has left there
+  platform::reset("$$$");
+  expect_running(1u << 0 | 1u << 3 | 1u << 31);
+  ASSERT_EQ(host("DISABLE PLC 3 PAUSE PLC 31"), "");
+  expect_running(1u << 0);
+  ASSERT_EQ(host("RESUME PLC 3,31"), "");
+  expect_running(1u << 0 | 1u << 31);
+  ASSERT_EQ(host("DISABLE PLC 0..31 ENABLE PLC 1..2"), "");
+  expect_running(1u << 1 | 1u << 2);
+}
+
+// What a PLC was in the middle of at a reset, and whom it had addressed, is nothing of the new start.
+TEST_F(Plc, BeginsAnewBehindAReset) {
+  load(1, {"P3=P3+1", "ADDRESS#3&2", "WHILE(P4=0)", "Q1=Q1+1", "ENDWHILE", "P5=5"});
+  load(2, {"Q2=Q2+1"});
+  ASSERT_EQ(host("I5=2 SAVE ENABLE PLC 1,2"), "");
+  background(3);
+  ASSERT_EQ(host("P3"), "1");
+  platform::reset("$$$");
+  ASSERT_EQ(host("P3=0 P4=1 &1Q1=0 &2Q1=0 Q2=0 &1Q2=0"), "");
+  background(1);
+  EXPECT_EQ(host("P3 P5"), "1|5") << "PLC 1 is the first, from its top";
+  background(1);
+  EXPECT_EQ(q_variable_read(0, 2), 1.0) << "PLC 2 is of &1";
 }
 
 TEST_F(Plc, WhatIsEnabledAfterOpenCloseSaveAndReset) {

@@ -244,6 +244,25 @@ TEST_F(ProgramTexts, CommandsControlPlcsAndRestart) {
   EXPECT_EQ(host("P8 &"), "0|1") << "what was queued is gone, as are the host's addresses";
 }
 
+// Of both tasks; nothing that a program has asked for before a reset is made behind it.
+TEST_F(ProgramTexts, AResetForgetsWhatWaits) {
+  for (const char* reset : {"$$$", "$$$***"}) {
+    load(1, {"SEND\"old\"", "CMDP\"P1=1\"", "CMD\"P2=2\"", "DISABLE PLC 1"});
+    ASSERT_EQ(host("OPEN PROG 1 CLEAR SEND\"older\" CMDP\"P3=3\" CMD\"P4=4\" CLOSE P1..4=0"), "");
+    ASSERT_EQ(host("ENABLE PLC 1 B1R"), "");
+    background(1);
+    platform::real_time();
+    for (const text_queue* queue : {send_queues, command_queues})
+      for (unsigned task = 0; task < PROGRAM_TASKS; ++task) ASSERT_FALSE(text_queue_is_empty(&queue[task])) << task;
+    platform::reset(reset);
+    sent();
+    background(4);
+    EXPECT_EQ(sent(), "");
+    EXPECT_EQ(host("P1..4"), "0|0|0|0");
+    ASSERT_EQ(host("I3=2 I6=1 I5=2"), "");
+  }
+}
+
 TEST_F(ProgramTexts, HostThatDoesNotReadHoldsUpNobodyButWhoSends) {
   fake_hal_on_wait(nobody_reads);
   const std::string text(100, 'x');
