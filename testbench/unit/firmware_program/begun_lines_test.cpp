@@ -53,8 +53,8 @@ class BegunLines : public MotionProgram {
 };
 
 const char* const kBegun[] = {
-    "X5",         "PSET",          "PSET X5", "NORMAL",   "NORMAL K1", "PVT100 X5:7", "PVT100 X5:7 Y1:2",
-    "CIRCLE1 I5", "CIRCLE1 R5 X5", "INC(X) X5",  "X5 NORMAL"};
+    "X5",         "PSET",          "PSET X5",   "NORMAL",   "NORMAL K1", "PVT100 X5:7", "PVT100 X5:7 Y1:2",
+    "CIRCLE1 I5", "CIRCLE1 R5 X5", "INC(X) X5", "X5 NORMAL"};
 
 TEST_F(BegunLines, ARunTimeErrorForgetsIt) {
   for (const char* begun : kBegun) {
@@ -167,6 +167,38 @@ TEST_F(BegunLines, OfALineWithElsePeShowsIt) {
   platform::servo_ticks(12);
   ASSERT_TRUE(cs().active);
   EXPECT_EQ(host("PE"), "P1:" + text.substr(from, line - from));
+}
+
+// A program that is pointed to while an abort is still being settled, in any slice of that: it is about the new program
+// then, all of whose first line is executed.
+TEST_F(BegunLines, APointWithinAnAbortHasTheWholeProgram) {
+  unsigned within = 0;
+  for (unsigned slices = 1; slices <= 40; ++slices) {
+    platform::power_up();
+    Lines lines = {"TM10TA2TS0", "DWELL50"};
+    for (unsigned i = 1; i <= 20; ++i) lines.back() += " P" + std::to_string(i) + "=1";
+    store(1, lines);
+    store(2, {"P30=1 P31=1 P32=1 P33=1", "P34=1"});
+    ASSERT_EQ(host("B1R"), "");
+    platform::servo_ticks(30);  // in the DWELL, within its line
+    ASSERT_TRUE(cs().active);
+    ASSERT_EQ(host("A"), "");
+    fake_hal_on_pause([] {});
+    fake_hal_slices_leave(true);
+    for (unsigned i = 0; i < slices; ++i) fake_task_run_real_time();
+    within += cs().settling ? 1u : 0u;
+    ASSERT_EQ(host("B2"), "");
+    fake_hal_slices_leave(false);
+    fake_hal_on_pause(nullptr);
+    platform::servo_ticks(9);
+    EXPECT_FALSE(cs().settling);
+    ASSERT_EQ(host("R"), "");
+    ASSERT_TRUE(finish());
+    EXPECT_FALSE(error());
+    EXPECT_EQ(host("P30..34"), "1|1|1|1|1") << slices;
+    EXPECT_EQ(host("P1"), "0");
+  }
+  EXPECT_GT(within, 10u) << "one for each word that is skipped";
 }
 
 }  // namespace
