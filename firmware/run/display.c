@@ -39,7 +39,7 @@ void display_value(uint32_t column, uint32_t width, uint32_t decimals, double va
   double scaled = math_absolute(value);
   for (uint32_t i = 0; i < places; i++) scaled *= 10.0;
   struct field field = {{0}, end, scaled < 1e16}; /* what has more digits is wider than any field */
-  uint64_t digits = field.fits ? (uint64_t)math_nearest(scaled) : 0;
+  uint64_t digits = field.fits ? (uint64_t)(scaled + 0.5) : 0;
   const bool negative = value < 0.0 && digits != 0;
   for (uint32_t i = 0; digits != 0 || i <= places; i++, digits /= 10u) {
     if (i == places && places != 0) prepend(&field, '.');

@@ -52,7 +52,6 @@ error_t run_point(uint32_t cs, double program) {
   uint32_t number, label, offset = 0;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
   if (s->next_valid || paths[cs].count != 0) {
-    time_base_stay(cs);
     s->settling = true;
     cs_awake |= 1u << cs;
   }

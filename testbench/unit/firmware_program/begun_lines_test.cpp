@@ -169,6 +169,28 @@ TEST_F(BegunLines, OfALineWithElsePeShowsIt) {
   EXPECT_EQ(host("PE"), "P1:" + text.substr(from, line - from));
 }
 
+// firmware:4.10/4: at once, whatever is being calculated; the rest of that is not made first. Here it is the search for
+// a label behind 300 lines, a place to be left in each.
+TEST_F(BegunLines, AnAbortWaitsForNoWord) {
+  Lines called(300, "P1=1");
+  called.emplace_back("N7 P2=2");
+  store(2, called);
+  store(1, {"CALL2.00007"});
+  ASSERT_EQ(host("B1R"), "");
+  fake_hal_on_pause([] {});
+  fake_hal_slices_leave(true);
+  for (unsigned i = 0; i < 50; ++i) fake_task_run_real_time();
+  ASSERT_TRUE(fake_hal_slice_is_left());
+  ASSERT_EQ(host("A"), "");
+  unsigned slices = 0;
+  for (; cs().settling && slices < 500; ++slices) fake_task_run_real_time();
+  EXPECT_LT(slices, 50u);
+  fake_hal_slices_leave(false);
+  fake_hal_on_pause(nullptr);
+  platform::servo_ticks(9);
+  EXPECT_EQ(host("P2 RY$2014"), "0|0");
+}
+
 // A program that is pointed to while an abort is still being settled, in any slice of that: it is about the new program
 // then, all of whose first line is executed.
 TEST_F(BegunLines, APointWithinAnAbortHasTheWholeProgram) {

@@ -95,6 +95,11 @@ const Words kStatements[] = {
     {word(OP_ASSIGN_INDEXED, VARIABLE_P, 0)},
     {word(OP_CONDITION, CONDITION_IF, 0)},
     {word(OP_LIST, DISPLAY_VALUE, 0)},
+    {word(OP_RATE_POP, 0, RATE_F)},
+    {word(OP_STATEMENT_POP, 0, KEY_GOTO)},
+    {word(OP_SYNCHRONOUS, SYNCHRONOUS_SET, 1)},
+    {word(OP_SYNCHRONOUS_INDEXED, SYNCHRONOUS_SET, 0)},
+    {word(OP_PUSH_INDEXED, VARIABLE_P, 0)},
 };
 
 TEST_F(DamagedPrograms, AMotionProgramStopsWithAnError) {
@@ -126,6 +131,19 @@ TEST_F(DamagedPrograms, APlcIsDisabled) {
     EXPECT_EQ(host("P1..3"), "1|0|0");
     EXPECT_EQ(plc_enabled(), 0u);
   }
+}
+
+// There are eight locks; one that is none is no lock of others either.
+TEST_F(DamagedPrograms, ALockThatThereIsNotIsNone) {
+  for (const unsigned key : {static_cast<unsigned>(KEY_LOCK), static_cast<unsigned>(KEY_UNLOCK)})
+    for (const double number : {8.0, 9.0, -1.0, 32.0}) {
+      platform::power_up();
+      ASSERT_EQ(host("OPEN PROG 1 CLEAR P1=1 P2=2 P3=3 CLOSE LOCK0,P9 LOCK7,P9"), "");
+      damage(FIXED_PROG, {word(OP_STATEMENT, 0, key, number)});
+      ASSERT_EQ(host("B1R"), "");
+      ASSERT_TRUE(finish());
+      EXPECT_EQ(host("P1..3 RY$2014 I4904"), "1|0|3|0|$811") << key << " " << number;
+    }
 }
 
 // No buffer that is read as it is filled can be jumped about in.

@@ -172,4 +172,45 @@ TEST_F(OwnStops, StopHoldsBehindMovesThatWait) {
   }
 }
 
+// A start that has not yet taken its motors, which stand where a jog has left them, is one already.
+TEST_F(OwnStops, AStartBehindAStopRightBehindAStartIsNotRefused) {
+  begin("I122=50");
+  store({"LINEAR TM30 TA20 TS0 X1"});
+  ASSERT_EQ(host("#1J:300"), "");
+  ticks(100);
+  for (const char* again : {"R", ">"}) {
+    ASSERT_EQ(host("B1R"), "");
+    ASSERT_EQ(host("Q"), "");
+    EXPECT_EQ(host(again), "") << again;
+    stands_at(1000);
+    ASSERT_EQ(host("#1J:-200"), "");
+    ticks(100);
+  }
+}
+
+// motion:5.6/4: what a program moves itself is nowhere to come back from, at no servo interrupt, in whichever mode.
+TEST_F(OwnStops, AStartBehindAStopOfWhatStillMovesIsNeverRefused) {
+  const Lines programs[] = {{"RAPID X1", "X2", "X1.5"},
+                            {"LINEAR TM30 TA20 TS0 X1", "RAPID X2", "LINEAR X1", "DWELL10"},
+                            {"HOMEZ1", "RAPID X1", "HOMEZ1", "RAPID X1"}};
+  for (const Lines& lines : programs)
+    for (const char* stop : {"Q", "/", "S"}) {
+      SCOPED_TRACE(lines.front() + " " + stop);
+      begin("I122=50 I119=1");
+      store(lines);
+      ASSERT_EQ(host("B1R"), "");
+      unsigned starts = 0;
+      for (unsigned i = 0; i < 2000 && !HasFailure(); ++i) {
+        platform::servo_ticks(1);
+        if (!run_is_running(0)) break;
+        ASSERT_EQ(host(stop), "");
+        ASSERT_EQ(host("R"), "") << i;
+        ++starts;
+      }
+      EXPECT_GT(starts, 100u);
+      EXPECT_FALSE(run_is_running(0));
+      EXPECT_EQ(number(), "0");
+    }
+}
+
 }  // namespace

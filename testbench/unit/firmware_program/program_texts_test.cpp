@@ -6,6 +6,10 @@
 #include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/platform.h"
 
+extern "C" {
+#include "firmware/run/display.h"
+}
+
 namespace {
 
 using platform::background;
@@ -378,6 +382,100 @@ TEST_F(ProgramTexts, DisplayIsKeptInMemory) {
   EXPECT_EQ(text.substr(40, 6), " 0.000");
   EXPECT_EQ(text.substr(76), "beyo");
   EXPECT_EQ(*hal_y(0x1080 + 80), 0u);
+}
+
+// Right-aligned, rounded to its decimals, stars where it is too wide; no sign of what is shown as 0.
+TEST_F(ProgramTexts, NumbersAreShownInTheirFields) {
+  const struct {
+    const char *field, *value, *shown;
+  } cases[] = {{"1.0", "5", "5"},
+               {"1.0", "10", "*"},
+               {"1.0", "0-5", "*"},
+               {"2.0", "0-5", "-5"},
+               {"3.2", "0.5", "***"},
+               {"4.2", "0.5", "0.50"},
+               {"5.2", "0-0.5", "-0.50"},
+               {"4.1", "0-0.04", " 0.0"},
+               {"4.1", "0-0.06", "-0.1"},
+               {"5.1", "99.96", "100.0"},
+               {"4.1", "99.96", "****"},
+               {"6.0", "1234.4", "  1234"},
+               {"6.0", "1234.6", "  1235"},
+               {"16.9", "1/8", "     0.125000000"},
+               {"16.0", "10000000*10000000", " 100000000000000"},
+               {"16.1", "10000000*10000000", "****************"},
+               {"16.2", "10000000*10000000", "****************"},
+               {"16.9", "10000000*10000000", "****************"},
+               {"16.9", "987654+1/8", "987654.125000000"},
+               {"16.8", "1234567.5", "1234567.50000000"},
+               {"16.0", "1000000*1000000000", "1000000000000000"},
+               {"16.0", "100000000*1000000000", "****************"},
+               {"16.9", "0-123456", "****************"}};
+  for (const auto& c : cases) {
+    const std::string width(c.shown);
+    EXPECT_EQ(once({"DISP 0\"" + std::string(40, '#') + "\"", std::string("DISP 10,") + c.field + "," + c.value}), "");
+    std::string text;
+    for (unsigned i = 0; i < 40; ++i) text += static_cast<char>(*hal_y(0x1080 + i));
+    EXPECT_EQ(text, std::string(10, '#') + c.shown + std::string(30 - width.size(), '#')) << c.field << " " << c.value;
+  }
+}
+
+// What a damaged word asks for beyond 16 characters or nine decimals is as much as there is.
+TEST_F(ProgramTexts, FieldsHaveTheirEnds) {
+  for (unsigned i = 0; i < 80; ++i) *hal_y(0x1080 + i) = '#';
+  display_value(20, 255, 255, 0.125);
+  display_value(40, 17, 10, 0.125);
+  std::string text;
+  for (unsigned i = 20; i < 60; ++i) text += static_cast<char>(*hal_y(0x1080 + i));
+  EXPECT_EQ(text, "     0.125000000####     0.125000000####");
+}
+
+TEST_F(ProgramTexts, TheDisplayEndsWithItsLastColumn) {
+  *hal_y(0x1080 + 80) = 0x55;
+  EXPECT_EQ(once({"DISP 78,4.0,1234", "DISP 79\"AB\""}), "");
+  EXPECT_EQ(*hal_y(0x1080 + 78), static_cast<std::uint32_t>('1'));
+  EXPECT_EQ(*hal_y(0x1080 + 79), static_cast<std::uint32_t>('A'));
+  EXPECT_EQ(*hal_y(0x1080 + 80), 0x55u);
+}
+
+// firmware:6.7/9: 1024 bytes, five of them for what a text comes with. Filled and emptied in turns, over its end.
+TEST(TextQueue, TakesWhatItHasRoomForAndGivesItInOrder) {
+  static text_queue queue;
+  std::vector<program_text> waiting;
+  unsigned bytes = 0, refused = 0, exact = 0;
+  queue.head = queue.tail = 0xFFFFFF00u;  // both run over the end of their numbers
+  for (unsigned i = 0; i < 4000; ++i) {
+    program_text t{};
+    t.port = static_cast<std::uint8_t>(i % 5);
+    t.cs = static_cast<std::uint8_t>(i % 16);
+    t.motor = static_cast<std::uint8_t>(i % 32);
+    t.control = static_cast<std::uint8_t>(i % 2);
+    const unsigned room = 1024 - bytes;
+    t.length = static_cast<std::uint8_t>(i % 7 == 0 && room >= 6 && room <= 260 ? room - 5 : i * 37 % 256);
+    for (unsigned n = 0; n < t.length; ++n) t.text[n] = static_cast<char>(i + n);
+    const bool fits = room >= 5u + t.length;
+    ASSERT_EQ(text_queue_push(&queue, &t), fits) << i;
+    if (fits) waiting.push_back(t), bytes += 5u + t.length;
+    refused += fits ? 0u : 1u;
+    exact += bytes == 1024 ? 1u : 0u;
+    ASSERT_EQ(text_queue_is_empty(&queue), waiting.empty());
+    for (unsigned n = fits ? i % 2 : 3; n > 0 && !waiting.empty(); --n) {
+      program_text got{};
+      ASSERT_EQ(text_queue_next_port(&queue), waiting.front().port);
+      ASSERT_TRUE(text_queue_pop(&queue, &got));
+      const program_text& sent = waiting.front();
+      ASSERT_EQ(std::string(got.text, got.length), std::string(sent.text, sent.length)) << i;
+      ASSERT_TRUE(got.port == sent.port && got.cs == sent.cs && got.motor == sent.motor && got.control == sent.control);
+      bytes -= 5u + sent.length;
+      waiting.erase(waiting.begin());
+    }
+  }
+  EXPECT_GT(refused, 100u);
+  EXPECT_GT(exact, 10u) << "full to the last byte";
+  program_text rest;
+  text_queue_empty(&queue);
+  EXPECT_TRUE(text_queue_is_empty(&queue));
+  EXPECT_FALSE(text_queue_pop(&queue, &rest));
 }
 
 TEST_F(ProgramTexts, LocksHoldNobody) {
