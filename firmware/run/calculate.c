@@ -54,7 +54,6 @@ static void stop_with_error(uint32_t cs) {
     motion_program_drop_line(p);
   else
     executor_back(&p->x);
-  p->under_way = false;
   /* Behind the last pause: R there would forget both. */
   s->error = cause;
   s->quit = s->own_stop = true;
@@ -127,7 +126,7 @@ static bool calculate_word(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
   const uint32_t moves = s->planned;
   struct instruction in;
-  if (calls_prelude_is_due(p) && s->pending_axes == 0) {
+  if (calls_prelude_is_due(p)) {
     const enum executed called = calls_prelude_call(p);
     if (called == EXECUTED_ERROR) stop_with_error(cs);
     return called == EXECUTED_LINE;

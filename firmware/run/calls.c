@@ -78,6 +78,7 @@ static enum executed call(struct motion_program* p, uint32_t program, uint32_t l
   p->callers[p->depth++] = p->x.at;
   reader_fixed(&p->x.at.reader, FIXED_PROG, program, offset);
   executor_begin(&p->x, p->x.cs);
+  p->x.at.line = offset; /* a label may stand within one */
   return EXECUTED_LINE;
 }
 
@@ -99,7 +100,9 @@ static enum executed jump(struct motion_program* p, double value) {
   const uint32_t program = p->x.at.reader.number;
   if (!within(p, value, &label)) return executor_fail(&p->x, RUN_TIME_LABEL);
   const enum reader_result found = calls_find(program, label, &offset);
-  return found == READER_WORD ? executor_jump(&p->x, offset) : not_found(p, program, found);
+  if (found != READER_WORD) return not_found(p, program, found);
+  p->x.at.line = offset;
+  return executor_jump(&p->x, offset);
 }
 
 /* Letter that a value of a calling line belongs to, 0 for A; 26: none. */

@@ -6,7 +6,7 @@
 
 void executor_begin(struct executor* x, uint32_t cs) {
   const struct program_reader reader = x->at.reader;
-  x->at = (struct program_position){.reader = reader, .line = reader_offset(&reader)};
+  x->at = (struct program_position){.reader = reader};
   x->cs = cs;
   x->prefix = x->evaluator.depth = 0;
   x->condition.open = false;
@@ -30,7 +30,7 @@ enum executed executor_end_line(struct executor* x) {
 enum executed executor_jump(struct executor* x, uint32_t offset) {
   x->at.loop_count = 0;
   if (offset <= x->at.reader.offset) x->jumps_back++;
-  x->at.line = x->at.reader.offset = offset; /* a label may stand within a line */
+  x->at.reader.offset = offset;
   return executor_end_line(x);
 }
 

@@ -18,6 +18,7 @@ void motion_program_point(uint32_t cs, bool rotary, uint32_t number, uint32_t of
   else
     reader_fixed(&p->x.at.reader, FIXED_PROG, number, offset);
   executor_begin(&p->x, cs);
+  p->x.at.line = reader_offset(&p->x.at.reader);
   p->depth = 0;
   motion_program_forget_line(cs);
   p->in_block = p->under_way = p->reading = p->asks_time = p->labelled = p->prelude.on = false;

@@ -46,6 +46,7 @@ TEST(Path, AnEndIsThePositionThatIsWritten) {
 }
 
 class PathErrors : public MovingMotors {};
+class PathLoops : public MovingMotors {};
 
 // firmware:7.10: a feedrate of 0 is error 8, whatever plans the move.
 TEST_F(PathErrors, AFeedrateOfZeroIsOneWithAndWithoutSegments) {
@@ -89,6 +90,32 @@ TEST_F(PathErrors, BehindAnErrorTheArcIsMetAgain) {
     EXPECT_EQ(host("RY$2014"), "0");
     EXPECT_EQ(at(1), 10000);
     EXPECT_NEAR(highest, 5000, 100) << "half a circle of radius 5, clockwise";
+  }
+}
+
+// firmware:7.9/3: two jumps back end blending where no move lies between them; moves that a loop makes one behind the
+// other blend, however many are calculated in an interrupt. From rest to rest 40 of 20 ms take 800 + 10 + 2 Isx13.
+TEST_F(PathLoops, MovesOfALoopBlend) {
+  for (const auto& [begins, ends] : {std::pair{"WHILE(P1<40)", "ENDWHILE"}, {"N1", "IF(P1<40) GOTO1"}}) {
+    SCOPED_TRACE(begins);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=10 P1=0"), "");
+    store({"INC TM20 TA10 TS0", begins, "P1=P1+1 X1", ends});
+    EXPECT_NEAR(run(), 830, 5);
+    EXPECT_EQ(at(1), 40000);
+  }
+}
+
+// The same rule from its other side: behind one jump back the next move blends, behind two it begins from rest.
+TEST_F(PathLoops, TwoJumpsBackEndBlending) {
+  for (const auto& [jumps, ms] : {std::pair{"0", 240 + 20}, {"1", 240 + 20}, {"2", 240 + 40}, {"5", 240 + 40}}) {
+    SCOPED_TRACE(jumps);
+    platform::power_up();
+    fit({"1000X"});
+    store({"INC TM120 TA20 TS0 P1=0 X1", std::string("WHILE(P1<") + jumps + ")", "P1=P1+1", "ENDWHILE", "X1"});
+    EXPECT_NEAR(run(), ms, 2);
+    EXPECT_EQ(at(1), 2000);
   }
 }
 

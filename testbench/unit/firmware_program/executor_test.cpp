@@ -60,7 +60,6 @@ TEST_F(Executor, BeginHasNothingOfWhatWasBefore) {
   EXPECT_EQ(x_.cs, 4u);
   EXPECT_EQ(x_.at.reader.offset, 1u);
   EXPECT_EQ(x_.at.reader.number, 1u);
-  EXPECT_EQ(x_.at.line, 1u);
   EXPECT_EQ(x_.at.loop_count, 0u);
   EXPECT_EQ(x_.error, RUN_TIME_NONE);
 }
@@ -72,7 +71,6 @@ TEST_F(Executor, AJumpEndsTheLineAndItsLoopsAndCountsWhenItGoesBack) {
     EXPECT_EQ(executor_jump(&x_, target), EXECUTED_LINE);
     nothing_is_begun();
     EXPECT_EQ(x_.at.reader.offset, target) << "not the begin of a loop";
-    EXPECT_EQ(x_.at.line, target);
     EXPECT_EQ(x_.at.loop_count, 0u);
     EXPECT_EQ(x_.jumps_back, target <= 2 ? 8u : 7u) << target;
   }

@@ -109,6 +109,7 @@ TEST_F(RunTimeErrors, OneInACalledProgramTakesTheLineThatCalls) {
   EXPECT_EQ(number(), "2");
   EXPECT_EQ(host("P1..6"), "1|0|3|0|0|0");
   EXPECT_EQ(host("PR"), "1");
+  EXPECT_EQ(host("PC").find('>'), std::string::npos) << "it is in no call any more";
   ASSERT_EQ(host("P1=0 P3=0 R"), "");
   platform::servo_ticks(9);
   EXPECT_FALSE(error());
