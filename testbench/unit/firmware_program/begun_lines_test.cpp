@@ -130,6 +130,52 @@ TEST_F(BegunLines, ALineEndsWithItsReturn) {
   }
 }
 
+// Axes before a statement that moves, waits, calls, stops or sets positions move before it, those behind it then
+// (firmware:7.1); other statements stand between axes of one move.
+TEST_F(BegunLines, SomeStatementsEndTheMoveBeforeThem) {
+  const struct {
+    const char* between;
+    unsigned moves;
+  } cases[] = {{"DWELL1", 3},   {"DELAY1", 3},     {"CALL7", 2},     {"GOSUB7", 2}, {"G7", 2},     {"M7", 2},
+               {"STOP", 2},     {"BLOCKSTART", 2}, {"BLOCKSTOP", 2}, {"WAIT", 2},   {"PSET", 1},   {"P1=1", 1},
+               {"F100", 1},     {"TM20", 1},       {"TA5", 1},       {"TS1", 1},    {"INC(A)", 1}, {"FRAX(X)", 1},
+               {"M1==1", 1},    {"SEND\"\"", 1},   {"LINEAR", 1},    {"N9", 1},     {"S5", 1},     {"DISPLC1", 1},
+               {"MOVETIME", 1}, {"LOCK1", 1},      {"HOMEZ1", 2}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.between);
+    platform::power_up();
+    store(7, {"RETURN"});
+    store(1000, {"N7000 RETURN"});
+    store(1001, {"N7000 RETURN"});
+    store(1, {"TM10TA2TS0", std::string("X1 ") + c.between + " Y2", "RETURN", "N7 RETURN"});
+    const std::uint32_t moves = cs().planned;
+    ASSERT_EQ(host("M1->* B1R"), "");
+    ASSERT_TRUE(finish());
+    if (c.between == std::string("STOP")) {
+      EXPECT_EQ(cs().position[AXIS_Y], 0.0);
+      ASSERT_EQ(host("R"), "");
+      ASSERT_TRUE(finish());
+    }
+    EXPECT_FALSE(error());
+    EXPECT_EQ(cs().planned - moves, c.moves);
+    EXPECT_EQ(x(), 1.0);
+    EXPECT_EQ(cs().position[AXIS_Y], 2.0);
+  }
+}
+
+// So they do where that call or jump has no target: the program stands at it, behind the move.
+TEST_F(BegunLines, AxesBeforeACallThatFailsHaveMoved) {
+  for (const char* call : {"CALL99", "GOSUB5", "GOTO5", "G7", "M7", "T1", "D1", "CALL(-1)", "GOTO(P9)", "G(-1)"}) {
+    SCOPED_TRACE(call);
+    platform::power_up();
+    ASSERT_EQ(host("P9=5"), "");
+    run({"TM10TA2TS0", std::string("X1 ") + call + " Y2"});
+    EXPECT_TRUE(error());
+    EXPECT_EQ(x(), 1.0);
+    EXPECT_EQ(cs().position[AXIS_Y], 0.0);
+  }
+}
+
 // motion:5.6/5: a step by Isx53 bit 0 goes to the end of the line, whatever a PSET in it has done already.
 TEST_F(BegunLines, AStepOfALineGoesOnBehindPset) {
   store(1, {"PSET X5 WAIT P1=1", "P2=1"});
