@@ -12,6 +12,7 @@
 #include "firmware/command/variable_commands.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/language/statement.h"
+#include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/pq_variables.h"
 
@@ -159,5 +160,6 @@ error_t command_line(const char* line) {
     error = program_line_commit();
   else
     program_line_abandon();
+  i_hardware_apply_clock_directions();
   return error;
 }

@@ -50,11 +50,11 @@ static error_t cmd_executing(struct lexer* lx) { /* PE */
   return report_trace(&trace);
 }
 
-static error_t cmd_point(struct lexer* lx) { /* B{n} */
+static error_t cmd_point(struct lexer* lx) { /* B{n}; B(1) moves an axis */
   double program;
+  if (lexer_constant(lx, &program) == ERR_NONE) return run_point(session.cs, program);
   const struct lexer word = {lx->at - 1};
-  if (lexer_constant(lx, &program) != ERR_NONE) return statement_starts(word) ? ERR_NEEDS_BUFFER : ERR_DATA;
-  return run_point(session.cs, program);
+  return statement_starts(word) ? ERR_NEEDS_BUFFER : ERR_DATA;
 }
 
 static error_t cmd_run(struct lexer* lx) {
@@ -81,11 +81,11 @@ static error_t control(struct lexer* lx, void (*action)(uint32_t cs)) {
 static error_t cmd_quit(struct lexer* lx) { return control(lx, run_quit); }
 static error_t cmd_abort(struct lexer* lx) { return control(lx, motors_abort); }
 
-static error_t cmd_abort_and_run(struct lexer* lx) { /* ABR{n} */
+static error_t cmd_abort_and_run(struct lexer* lx) { /* ABR{n}; neither a value that is none nor a word follows */
   double program = 0.0;
-  const char c = *lx->at;
-  const bool has_number = lexer_constant(lx, &program) == ERR_NONE;
-  if (!has_number && ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || c == '(')) return ERR_DATA;
+  const bool has_value = lexer_value_starts(*lx), has_number = lexer_constant(lx, &program) == ERR_NONE;
+  const char next = lexer_peek(lx);
+  if (!has_number && (has_value || (next >= 'A' && next <= 'Z'))) return ERR_DATA;
   return restart_begin(session.cs, has_number, program);
 }
 

@@ -49,11 +49,14 @@ static void stop_with_error(uint32_t cs) {
   } else if (p->x.at.reader.rotary && p->x.at.begun) {
     (void)rotary_consume(cs, 1);
   }
-  motion_program_forget_line(cs);
-  if (p->x.at.reader.rotary)
+  s->pending_axes = 0;
+  if (p->x.at.reader.rotary) {
+    motion_program_forget_line(cs);
     motion_program_drop_line(p);
-  else
-    executor_back(&p->x);
+  } else {
+    executor_back(&p->x); /* R goes on in the line: what else has been collected of it counts then */
+  }
+  p->under_way = false;
   /* Behind the last pause: R there would forget both. */
   s->error = cause;
   s->quit = s->own_stop = true;
@@ -305,7 +308,7 @@ static void calculate_round(void) {
 void calculate_initialize(void) {
   calculated = COORDINATE_SYSTEMS;
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
-    motion_program_point(cs, true, 0, 0);
+    motion_program_point(cs, true, 0, PROGRAM_TOP);
     segment_forget(cs);
   }
   synchronous_initialize();

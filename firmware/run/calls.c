@@ -29,19 +29,18 @@ static bool is_label(const struct instruction* in, uint32_t label) {
   return in->operation == OP_STATEMENT && (in->number == KEY_N || in->number == KEY_O) && in->value == (double)label;
 }
 
-enum reader_result calls_find(uint32_t program, uint32_t label, uint32_t* offset) {
+enum reader_result calls_find(uint32_t program, uint32_t label, struct program_entry* entry) {
   struct program_reader reader;
   word48_t word;
   enum reader_result found;
-  *offset = 0;
+  *entry = PROGRAM_TOP;
   if (label == 0) return reader_check(FIXED_PROG, program);
   reader_fixed(&reader, FIXED_PROG, program, 0);
   for (; (found = reader_peek(&reader, 0, &word)) == READER_WORD; slice_pause()) {
     const struct instruction in = word_decode(word);
-    if (is_label(&in, label)) {
-      *offset = reader.offset;
-      return READER_WORD;
-    }
+    entry->offset = reader.offset;
+    if ((word & WORD_START_OF_LINE) != 0) entry->line = reader.offset;
+    if (is_label(&in, label)) return READER_WORD;
     reader.offset += 1u + word_raw_count(&in);
   }
   return found;
@@ -67,18 +66,19 @@ static enum executed not_found(struct motion_program* p, uint32_t program, enum 
 
 /* The statement is passed when its target is known: an error leaves the program at it. PRELUDE has none. */
 static enum executed call(struct motion_program* p, uint32_t program, uint32_t label, bool has_statement) {
-  uint32_t offset;
+  struct program_entry entry;
   if (p->depth == CALL_DEPTH) return executor_fail(&p->x, RUN_TIME_DEPTH);
-  const enum reader_result found = calls_find(program, label, &offset);
+  if (program == 0) return executor_fail(&p->x, RUN_TIME_PROGRAM);
+  const enum reader_result found = calls_find(program, label, &entry);
   if (found != READER_WORD) return not_found(p, program, found);
   if (has_statement)
     (void)executor_pass(&p->x);
   else
     p->x.at.in_line = true; /* READ looks there, and it is no beginning any more */
   p->callers[p->depth++] = p->x.at;
-  reader_fixed(&p->x.at.reader, FIXED_PROG, program, offset);
+  reader_fixed(&p->x.at.reader, FIXED_PROG, program, entry.offset);
   executor_begin(&p->x, p->x.cs);
-  p->x.at.line = offset; /* a label may stand within one */
+  p->x.at.line = entry.line;
   return EXECUTED_LINE;
 }
 
@@ -96,13 +96,14 @@ static bool within(const struct motion_program* p, double value, uint32_t* label
 }
 
 static enum executed jump(struct motion_program* p, double value) {
-  uint32_t label, offset;
+  uint32_t label;
+  struct program_entry entry;
   const uint32_t program = p->x.at.reader.number;
   if (!within(p, value, &label)) return executor_fail(&p->x, RUN_TIME_LABEL);
-  const enum reader_result found = calls_find(program, label, &offset);
+  const enum reader_result found = calls_find(program, label, &entry);
   if (found != READER_WORD) return not_found(p, program, found);
-  p->x.at.line = offset;
-  return executor_jump(&p->x, offset);
+  p->x.at.line = entry.line;
+  return executor_jump(&p->x, entry.offset);
 }
 
 /* Letter that a value of a calling line belongs to, 0 for A; 26: none. */

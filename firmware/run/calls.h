@@ -14,9 +14,9 @@ enum executed calls_prelude_call(struct motion_program* p); /* LINE; LATER, ERRO
 void calls_note_label(struct motion_program* p, enum executed executed, const struct instruction* in);
 bool calls_return(struct motion_program* p); /* false: nothing has called it */
 
-/* Offset of label N or O in a program, its top for 0. END, BAD: there is no such program or label. LATER: programs are
- * being moved, which no background sees. */
-enum reader_result calls_find(uint32_t program, uint32_t label, uint32_t* offset);
+/* Where label N or O stands in a program, its top for 0. END, BAD: there is no such program or label. LATER: programs
+ * are being moved, which no background sees. */
+enum reader_result calls_find(uint32_t program, uint32_t label, struct program_entry* entry);
 /* B{n}, CALL n: program and label of 3.025, which is label 2500 of program 3. False: out of range. */
 bool calls_split(double value, uint32_t* program, uint32_t* label);
 

@@ -11,14 +11,14 @@ void motion_program_forget_line(uint32_t cs) {
   s->sets_position = s->sets_normal = false;
 }
 
-void motion_program_point(uint32_t cs, bool rotary, uint32_t number, uint32_t offset) {
+void motion_program_point(uint32_t cs, bool rotary, uint32_t number, struct program_entry entry) {
   struct motion_program* p = &motion_programs[cs];
   if (rotary)
     reader_rotary(&p->x.at.reader, cs);
   else
-    reader_fixed(&p->x.at.reader, FIXED_PROG, number, offset);
+    reader_fixed(&p->x.at.reader, FIXED_PROG, number, entry.offset);
   executor_begin(&p->x, cs);
-  p->x.at.line = reader_offset(&p->x.at.reader);
+  p->x.at.line = rotary ? reader_offset(&p->x.at.reader) : entry.line;
   p->depth = 0;
   motion_program_forget_line(cs);
   p->in_block = p->under_way = p->reading = p->asks_time = p->labelled = p->prelude.on = false;
@@ -39,7 +39,7 @@ void motion_program_drop_line(struct motion_program* p) {
 
 void motion_program_restart(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  motion_program_point(cs, s->pointer == POINTER_ROTARY, s->fixed_program, 0);
+  motion_program_point(cs, s->pointer == POINTER_ROTARY, s->fixed_program, PROGRAM_TOP);
 }
 
 /* Program and line of a position; program 0 is the rotary buffer. */

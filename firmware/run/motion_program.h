@@ -7,6 +7,11 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/run/executor.h"
 
+/* Where a fixed program is entered: a word of it, its top or a label, and the line in which that stands. */
+struct program_entry {
+  uint32_t offset, line;
+};
+
 struct motion_program {
   struct executor x;
   struct program_position callers[CALL_DEPTH];
@@ -28,10 +33,13 @@ struct motion_program {
   uint32_t jumps_begin; /* x.jumps_back at its begin, or at the last move */
 };
 
+#define PROGRAM_TOP ((struct program_entry){0, 0})
+
 extern struct motion_program motion_programs[COORDINATE_SYSTEMS];
 
-void motion_program_point(uint32_t cs, bool rotary, uint32_t number, uint32_t offset); /* nothing of it is begun */
-void motion_program_restart(uint32_t cs);                                              /* the same once more */
+/* Nothing of it is begun. `entry`: of a fixed program. */
+void motion_program_point(uint32_t cs, bool rotary, uint32_t number, struct program_entry entry);
+void motion_program_restart(uint32_t cs);                            /* the same once more */
 void motion_program_forget_line(uint32_t cs);                        /* what has been collected of one */
 void motion_program_end_read(struct motion_program* p);              /* back from the caller's values, if it is there */
 void motion_program_drop_line(struct motion_program* p);             /* what is left of a begun line is lost */

@@ -36,11 +36,11 @@ static void drop_moves(uint32_t cs) {
 
 /* What is still to be settled after an abort is begun anew: it is about the new program then. A line of the rotary
  * buffer that was begun is lost, whatever was pointed to meanwhile. */
-static void point(uint32_t cs, uint32_t number, uint32_t offset) {
+static void point(uint32_t cs, uint32_t number, struct program_entry entry) {
   const uint32_t state = hal_mask_real_time();
   calculate_forget(cs);
   if (number == 0) rotary_skip_line_rest(cs);
-  motion_program_point(cs, number == 0, number, offset);
+  motion_program_point(cs, number == 0, number, entry);
   hal_unmask(state);
 }
 
@@ -49,7 +49,8 @@ static void point(uint32_t cs, uint32_t number, uint32_t offset) {
 error_t run_point(uint32_t cs, double program) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->running) return ERR_PROGRAM_RUNNING;
-  uint32_t number, label, offset = 0;
+  uint32_t number, label;
+  struct program_entry entry = PROGRAM_TOP;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
   if (s->next_valid || paths[cs].count != 0) {
     s->settling = true;
@@ -60,14 +61,14 @@ error_t run_point(uint32_t cs, double program) {
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
     s->pointer = POINTER_ROTARY;
-    point(cs, 0, 0);
+    point(cs, 0, PROGRAM_TOP);
     return ERR_NONE;
   }
   s->fixed_program = number;
   if (fixed_program_find(FIXED_PROG, number) == 0) return ERR_NONE; /* R is ERR015 */
-  if (label != 0 && calls_find(number, label, &offset) != READER_WORD) return ERR_NONE;
+  if (label != 0 && calls_find(number, label, &entry) != READER_WORD) return ERR_NONE;
   s->pointer = POINTER_FIXED;
-  point(cs, number, offset);
+  point(cs, number, entry);
   return ERR_NONE;
 }
 
@@ -282,6 +283,7 @@ void run_stop_on_path(uint32_t cs) {
     run_hold(cs);
   } else if (!segment_stands(cs)) { /* there its motors may be on their way: it goes on standing */
     segment_order(cs, LOOKAHEAD_STOP);
+    s->must_return = true;
   }
   hal_unmask(state);
 }

@@ -65,6 +65,15 @@ TEST_F(Prelude, ByLabelsAndCodes) {
   EXPECT_EQ(p(4), 1) << "each supersedes the one before";
 }
 
+// A call that fails stops the program, behind a label too; a stop needs no end of the line.
+TEST_F(Prelude, ACallThatFailsBehindALabelStops) {
+  store(1, {"F1000", "PRELUDE1 CALL501", "N10 X1"});
+  ASSERT_EQ(host("B1R"), "");
+  platform::servo_ticks(30);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(host("RY$2014"), "2");
+}
+
 TEST_F(Prelude, BehindALabelOnly) {
   store(500, {"P1=P1+1", "RETURN"});
   run({"F1000", "PRELUDE1 CALL500", "N10 X1", "N20N30 X2", "P2=1 X3", "IF(P2=1) X4", "LINEAR X5"});

@@ -62,9 +62,37 @@ TEST_F(BegunLines, ARunTimeErrorForgetsIt) {
     platform::power_up();
     run({"TM10TA2TS0", std::string(begun) + " CC1"});
     ASSERT_TRUE(error());
-    nothing_is_left();
     next_program_is_whole(0.0);
   }
+}
+
+// There the line goes, with all of it.
+TEST_F(BegunLines, ARunTimeErrorTakesTheLineOfARotaryBuffer) {
+  for (const char* begun : {"PSET", "NORMAL K1", "CIRCLE1 I5", "PVT100 X5:7"}) {
+    SCOPED_TRACE(begun);
+    platform::power_up();
+    ASSERT_EQ(host("DEF ROT 100 OPEN ROT"), "");
+    ASSERT_EQ(host("TM10TA2TS0"), "");
+    ASSERT_EQ(host(std::string(begun) + " CC1"), "");
+    ASSERT_EQ(host("CLOSE B0R"), "");
+    platform::servo_ticks(30);
+    ASSERT_TRUE(error());
+    nothing_is_left();
+  }
+}
+
+// A fixed program stands at the statement (firmware:7.10): R goes on in its line, of which PSET has been read.
+TEST_F(BegunLines, RBehindARunTimeErrorGoesOnInTheLine) {
+  ASSERT_EQ(host("DEF TBUF 1"), "");
+  ASSERT_EQ(host("P1=99"), "");
+  run({"TM10TA2TS0", "PSET TSELECT(P1) X5"});
+  ASSERT_TRUE(error());
+  const std::uint32_t moves = cs().planned;
+  ASSERT_EQ(host("P1=1 R"), "");
+  ASSERT_TRUE(finish());
+  EXPECT_FALSE(error());
+  EXPECT_EQ(x(), 5.0);
+  EXPECT_EQ(cs().planned, moves) << "PSET X5 moves nothing";
 }
 
 TEST_F(BegunLines, AnAbortForgetsIt) {
@@ -185,12 +213,12 @@ TEST_F(BegunLines, AStepOfALineGoesOnBehindPset) {
   EXPECT_EQ(host("P1 P2"), "1|0");
 }
 
-// PE names the line that executes (firmware:4.9/2); where a program is entered behind its begin, that is the label.
-TEST_F(BegunLines, OfALineThatIsEnteredAtALabelPeShowsTheLabel) {
+// PE names the line that executes (firmware:4.9/2), one that is entered at a label within it, too.
+TEST_F(BegunLines, OfALineThatIsEnteredAtALabelPeShowsItsBegin) {
   const Lines lines = {"GOTO10", "P1=1 N10 TM1000 X5"};  // 0, 1, 2, 3, 4
   store(1, lines);
   store(7, {"P1=1", "CALL1.0001"});
-  for (const auto& [start, place] : {std::pair{"B1", "P1:2"}, {"B1.0001", "P1:2"}, {"B7", "P7:1>P1.2"}}) {
+  for (const auto& [start, place] : {std::pair{"B1", "P1:1"}, {"B1.0001", "P1:1"}, {"B7", "P7:1>P1.1"}}) {
     SCOPED_TRACE(start);
     ASSERT_EQ(host(std::string(start) + "R"), "");
     platform::servo_ticks(12);

@@ -40,8 +40,30 @@ TEST_F(EndsOfCommands, ALetterWithSomethingBehindItIsNoCommand) {
     Lines texts;
   } kinds[] = {{"ERR005", {"A(5)", "R(5)", "S(5)", "A(P1)", "A5", "R9", "S1", "A.5", "B(1)"}},
                {"ERR003",
-                {"H(5)", "H0", "AA", "HZ", "RQ", "SA", "QUIT", "E(1)", "E5", "ABR(5)", "ABR(P1)", "ABRA", "ABRZ",
-                 "ABR99999999999", "BX", "B"}}};
+                {"H(5)",
+                 "H0",
+                 "AA",
+                 "HZ",
+                 "RQ",
+                 "SA",
+                 "QUIT",
+                 "E(1)",
+                 "E5",
+                 "ABR(5)",
+                 "ABR (5)",
+                 "ABR(P1)",
+                 "ABRA",
+                 "ABRZ",
+                 "ABR X5",
+                 "ABR-X",
+                 "ABR P1=5",
+                 "ABR99999999999",
+                 "ABR 99999999999",
+                 "ABR-99999999999",
+                 "BX",
+                 "B",
+                 "B-",
+                 "B+X"}}};
   for (const auto& kind : kinds)
     for (const std::string& text : kind.texts) {
       ASSERT_EQ(host("B1R"), "");
@@ -58,6 +80,21 @@ TEST_F(EndsOfCommands, ALetterWithSomethingBehindItIsNoCommand) {
       EXPECT_EQ(host(text), kind.error) << text;
       EXPECT_FALSE(run_is_running(0)) << text;
     }
+}
+
+// firmware:1.1/4, firmware:4.3/7: a number that is too large is no axis.
+TEST_F(EndsOfCommands, BOfANumberThatIsTooLargeIsADataError) {
+  for (const char* text : {"B99999999999", "B32768", "B-1"}) EXPECT_EQ(host(text), "ERR003") << text;
+}
+
+// servo-ic:7.2/4: at the end of the line, whatever the background has to do before it comes to them.
+TEST_F(EndsOfCommands, ClockDirectionsActAtTheEndOfTheirLine) {
+  const auto inputs = [] { return *hal_x(0x078004) >> 12 & 3; };
+  ASSERT_EQ(inputs(), 0u);
+  ASSERT_EQ(host("I7007=3"), "");
+  EXPECT_EQ(inputs(), 3u);
+  ASSERT_EQ(host("I7007=0"), "");
+  EXPECT_EQ(inputs(), 0u);
 }
 
 // firmware:7.1/7. One by F then goes by time of its longest axis (firmware:7.5/3).
