@@ -5,9 +5,10 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 
-/* Distance covered while the velocity rises from 0 to 1 during `length` with S-parts of `s` at both ends, after `t`. */
+/* Distance covered while the velocity rises from 0 to 1 during `length` with S-parts of `s` at both ends, after `t`.
+ * At once without a length (TA0 TS0). */
 static double rise(double t, double length, double s) {
-  if (t <= 0.0 || length <= 0.0) return 0.0;
+  if (t <= 0.0) return 0.0;
   if (t >= length) return t - length / 2.0;
   if (t > length / 2.0) return t - length / 2.0 + rise(length - t, length, s);
   double slope = 1.0 / (length - s);
