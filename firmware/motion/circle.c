@@ -36,12 +36,12 @@ static void cross(const double a[CIRCLE_AXES], const double b[CIRCLE_AXES], doub
 
 static double length(const double a[CIRCLE_AXES]) {
   const double square = product(a, a);
-  return square > 0.0 ? math_square_root(square) : 0.0;
+  return math_square_root(square);
 }
 
 static double hypotenuse(double a, double b) {
   const double square = plus_product(plus_product(0.0, a, a), b, b);
-  const double root = square > 0.0 ? math_square_root(square) : 0.0;
+  const double root = math_square_root(square);
   return root;
 }
 

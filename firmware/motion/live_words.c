@@ -20,8 +20,7 @@ enum { /* of a motor; those of the servo loop: motion/servo_words.h */
        MOTOR_STATUS_2 = 0x40,
        MOTOR_STATUS_PHASE_REFERENCE = 8, /* a bit of it */
        MOTOR_SCALES = 0x4F,              /* X, U, A, B, C; Y, V; Z, W */
-       MOTOR_OFFSET = 0x52,
-       MOTORS_END = MEMORY_MOTOR_WORDS * (MOTORS + 1)
+       MOTOR_OFFSET = 0x52
 };
 
 enum { /* of a coordinate system */
@@ -117,9 +116,12 @@ static unsigned cs_word(uint32_t cs, uint32_t offset, uint32_t* x, uint32_t* y) 
   }
 }
 
+/* Whose word it is, from 0; MOTORS and more: of none. */
+static uint32_t motor_at(uint32_t address) { return address / MEMORY_MOTOR_WORDS - 1u; }
+
 static unsigned make(uint32_t address, uint32_t* x, uint32_t* y) {
-  if (address - MEMORY_MOTOR_WORDS < MOTORS_END - MEMORY_MOTOR_WORDS)
-    return motor_word(address / MEMORY_MOTOR_WORDS - 1u, address % MEMORY_MOTOR_WORDS, x, y);
+  const uint32_t motor = motor_at(address);
+  if (motor < MOTORS) return motor_word(motor, address % MEMORY_MOTOR_WORDS, x, y);
   if (address - MEMORY_CS_WORDS < CS_END - MEMORY_CS_WORDS)
     return cs_word((address - MEMORY_CS_WORDS) / MEMORY_CS_STRIDE, address % MEMORY_CS_STRIDE, x, y);
   if (address - MEMORY_CONVERSION < CONVERSION_LINES) {
@@ -175,33 +177,31 @@ static void write_reference(uint32_t motor, uint32_t offset, bool x, uint32_t ma
 }
 
 /* A variable O command. The register is read where it stands: the servo task writes it. */
-static void write_output(uint32_t in_motors, bool x, uint32_t mask, uint32_t bits) {
-  if (!x || in_motors >= MOTORS_END - MEMORY_MOTOR_WORDS) return;
-  if (in_motors % MEMORY_MOTOR_WORDS == MEMORY_MOTOR_FILTER_OUTPUT)
-    servo_word_write_output(in_motors / MEMORY_MOTOR_WORDS, mask, bits);
+static void write_output(uint32_t motor, uint32_t offset, bool x, uint32_t mask, uint32_t bits) {
+  if (x && motor < MOTORS && offset == MEMORY_MOTOR_FILTER_OUTPUT) servo_word_write_output(motor, mask, bits);
 }
 
 /* The commanded time base, blending (bit 4 of status word 1), the run-time error (bit 22 of word 2), the timers and the
  * phase reference error can be set, global status bits that stay can be cleared; the others belong to the firmware. */
 bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
   uint32_t present[2];
-  write_output(address - MEMORY_MOTOR_WORDS, x, mask, bits);
+  const uint32_t motor = motor_at(address), offset = address % MEMORY_MOTOR_WORDS;
+  write_output(motor, offset, x, mask, bits);
   if ((make(address, &present[1], &present[0]) & (x ? HALF_X : HALF_Y)) == 0u) return false;
   if (address == MEMORY_GLOBAL_STATUS && x) status_clear(mask & ~bits);
   const uint32_t in_systems = address - MEMORY_CS_WORDS;
   if (in_systems < MEMORY_CS_STRIDE * COORDINATE_SYSTEMS)
     write_cs(in_systems / MEMORY_CS_STRIDE, in_systems % MEMORY_CS_STRIDE, x, mask, bits);
-  const uint32_t in_motors = address - MEMORY_MOTOR_WORDS, line = address - MEMORY_CONVERSION;
-  if (in_motors < MOTORS_END - MEMORY_MOTOR_WORDS) {
-    write_reference(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, mask, bits);
-    servo_word_write(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, mask, bits);
+  if (motor < MOTORS) {
+    write_reference(motor, offset, x, mask, bits);
+    servo_word_write(motor, offset, x, mask, bits);
   }
+  const uint32_t line = address - MEMORY_CONVERSION;
   if (line < CONVERSION_LINES) i_variable_write_part(I8000_CONVERSION_TABLE + line, mask, bits);
   return true;
 }
 
 bool live_word_write_long(uint32_t address, uint32_t x, uint32_t y) {
-  const uint32_t in_motors = address - MEMORY_MOTOR_WORDS;
-  if (in_motors >= MOTORS_END - MEMORY_MOTOR_WORDS) return false;
-  return servo_word_write_long(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, y);
+  const uint32_t motor = motor_at(address);
+  return motor < MOTORS && servo_word_write_long(motor, address % MEMORY_MOTOR_WORDS, x, y);
 }
