@@ -10,7 +10,19 @@ namespace {
 
 using namespace moving_motors;
 
-class Sequences : public MovingMotors {};
+class Sequences : public MovingMotors {
+ protected:
+  static void add(double ticks, std::uint32_t move, bool continues) {
+    piece_ring& ring = cs().ring;
+    piece* p = piece_ring_at(&ring, ring.added);
+    *p = {};
+    piece_set_time(p, std::llround(ticks * platform::kDefaultI10));
+    p->to = PIECE_PARTS;
+    p->move = move;
+    p->continues = continues;
+    piece_ring_add(&ring);
+  }
+};
 
 // Lines without blends are sequences of 100 + 20 + 2 x 5 ms. While the first is executed the others are calculated: a
 // DWELL, RAPID, SPLINE or PVT move behind them comes last all the same.
@@ -49,15 +61,6 @@ TEST_F(Sequences, AnotherMoveDoesNotOvertakeThoseThatWait) {
 // the same, from rest with that interrupt (motion:5.1), and the real-time task sees room for another move.
 TEST_F(Sequences, AFirstPieceThatNoInterruptSeesBeginsItsSequence) {
   piece_ring& ring = cs().ring;
-  const auto add = [&ring](double ticks, std::uint32_t move, bool continues) {
-    piece* p = piece_ring_at(&ring, ring.added);
-    *p = {};
-    piece_set_time(p, std::llround(ticks * platform::kDefaultI10));
-    p->to = PIECE_PARTS;
-    p->move = move;
-    p->continues = continues;
-    piece_ring_add(&ring);
-  };
   add(1.5, 1, false);
   add(0.2, 2, false);
   add(20, 2, true);
@@ -77,6 +80,32 @@ TEST_F(Sequences, AFirstPieceThatNoInterruptSeesBeginsItsSequence) {
   EXPECT_FALSE(cs().placed);
   EXPECT_EQ(ring.elapsed, 0);
   EXPECT_EQ(ring.fraction, 0u);
+}
+
+// Pieces of a move that blends which are over before an interrupt has seen it are time that has passed in it, as far as
+// they went; those of the move before are not.
+TEST_F(Sequences, AMoveHasTheTimeOfPiecesThatNoInterruptSees) {
+  piece_ring& ring = cs().ring;
+  add(1.5, 1, false);
+  add(0.2, 2, false);
+  add(0.3, 2, false);
+  add(20, 2, false);
+  piece_ring_at(&ring, 2)->end = 100000;
+  cs().moves[0].blended = cs().moves[1].blended = true;
+  cs_busy |= 1;
+  system_path_servo();
+  ASSERT_EQ(cs().started, 1u);
+  EXPECT_EQ(cs().elapsed, 0);
+  system_path_servo();
+  EXPECT_EQ(cs().elapsed, platform::kDefaultI10);
+  ASSERT_EQ(ring.executing, 0u);
+  system_path_servo();
+  ASSERT_EQ(ring.executing, 3u) << "2 of 1.5 + 0.2 and 100000 units are over";
+  EXPECT_EQ(cs().started, 2u);
+  EXPECT_EQ(cs().elapsed, 2 * platform::kDefaultI10 - ring.pieces[0].time);
+  system_path_servo();
+  EXPECT_EQ(cs().elapsed, 3 * platform::kDefaultI10 - ring.pieces[0].time);
+  EXPECT_EQ(ring.elapsed, cs().elapsed - ring.pieces[1].time - 100000);
 }
 
 }  // namespace

@@ -4,6 +4,10 @@
 
 #include "testbench/unit/firmware_servo/desired_position_rig.h"
 
+extern "C" {
+#include "firmware/motion/compensation.h"
+}
+
 namespace brick {
 namespace {
 
@@ -273,6 +277,36 @@ TEST_F(DesiredPosition, ADeletedTableCorrectsNoMore) {
     ASSERT_EQ(c_.line(command), "");
     c_.servo(1);
     EXPECT_EQ(motors[0].compensation, 0) << command;
+  }
+}
+
+// Tables go while the servo task works: a motor whose own are not gone yet is corrected as before, whichever set of
+// them is made anew.
+TEST_F(DesiredPosition, TablesThatGoAreWholeUntilThen) {
+  static bool seen;
+  ASSERT_EQ(c_.line("#2 DEFINE COMP 4,#1D,#2,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#1D,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  close();
+  for (int turn = 0; turn < 4; ++turn) {
+    c_.line("I51=1");
+    if (turn % 2 == 1) compensation_changed();  // the other set
+    ASSERT_NEAR(desired(250), 260, 0.005);
+    ASSERT_NEAR(desired(0, 1), 10, 0.005);
+    seen = false;
+    fake_hal_on_unmask([] {
+      if ((compensation_of_position & 2u) == 0 || (compensation_of_position & 1u) != 0) return;
+      seen = true;  // the first has gone, the second not yet
+      desired_position_servo(1);
+      EXPECT_NEAR(static_cast<double>(motors[1].compensation) / kCount, 10, 0.005);
+    });
+    c_.line("I51=0");
+    fake_hal_on_unmask(nullptr);
+    EXPECT_TRUE(seen);
+    EXPECT_EQ(desired(250), 250);
+    EXPECT_EQ(desired(0, 1), 0);
+    EXPECT_EQ(motors[1].compensation, 0);
   }
 }
 

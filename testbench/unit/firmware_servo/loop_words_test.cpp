@@ -139,6 +139,42 @@ TEST_F(LoopWords, PositionsThatMayBeWritten) {
   }
 }
 
+// motion:1.3: $80 words a motor from $80 on, whole or by halves; below and behind them there is none.
+TEST_F(LoopWords, EachMotorHasWordsOfItsOwn) {
+  const auto at = [](unsigned motor, unsigned offset) {
+    char text[8];
+    std::snprintf(text, sizeof text, "$%X", 0x80 * motor + offset);
+    return std::string(text);
+  };
+  for (const unsigned motor : {0u, 1u, 2u, 31u, 32u, 33u}) {
+    SCOPED_TRACE(motor);
+    EXPECT_EQ(c_.line("M1->D:" + at(motor, 0x4C) + " M2->D:" + at(motor, 0x10)), "");
+    fake_hal_on_unmask([] {  // no servo interrupt sees one half of it
+      for (const struct motor& m : motors) {
+        EXPECT_TRUE(m.bias == 0 || m.bias == -5) << m.bias;
+        EXPECT_TRUE(m.compensation == 0 || m.compensation == 16777220) << m.compensation;
+      }
+    });
+    const std::string reply = c_.line("M1=-5 M2=16777220");
+    fake_hal_on_unmask(nullptr);
+    EXPECT_EQ(reply, "");
+    EXPECT_EQ(c_.line("WX" + at(motor, 0x0D) + ",3 WY" + at(motor, 0x0D) + ",7 WX" + at(motor, 0x3F) + ",11"), "");
+    for (unsigned i = 0; i < MOTORS; ++i) {
+      const bool is_it = i + 1 == motor;
+      EXPECT_EQ(motors[i].bias, is_it ? -5 : 0) << i;
+      EXPECT_EQ(motors[i].compensation, is_it ? 16777220 : 0) << i;
+      EXPECT_EQ(motors[i].master, is_it ? 3 * 16777216 + 7 : 0) << i;
+      EXPECT_EQ(motors[i].open_output, is_it ? 11 : 0) << i;
+    }
+    if (motor == 0 || motor > MOTORS) continue;
+    EXPECT_EQ(c_.line("M1"), "-5");
+    EXPECT_EQ(c_.line("RY" + at(motor, 0x0D)), "7");
+    motor_kill(motor - 1);
+    motors[motor - 1].bias = motors[motor - 1].compensation = motors[motor - 1].master = 0;
+    motors[motor - 1].open_output = 0;
+  }
+}
+
 // motion:2: up to 2^18 bits of a parallel word an interrupt, 24 bits that go round, and no count is lost.
 TEST_F(LoopWords, AParallelWordMayMoveByTwoTo18) {
   c_.line("I8000=$2010F2 I8001=$18000 I103=$3502 I104=$3502 I8002=0");
