@@ -164,7 +164,7 @@ void fixed_program_clear(void) { shorten(0); }
 void fixed_program_close(void) {
   begin_change(); /* its words have changed too */
   fixed.open = false;
-  if (fixed.count != 0 && fixed.programs[fixed.count - 1u].words == 0) fixed.count--;
+  if (fixed.programs[fixed.count - 1u].words == 0) fixed.count--;
   end_change();
 }
 
