@@ -280,6 +280,14 @@ TEST_F(DesiredPosition, ADeletedTableCorrectsNoMore) {
   }
 }
 
+// firmware:5.7: bit 14 of global status word 1 follows I51.
+TEST_F(DesiredPosition, StatusTellsWhetherTablesCorrect) {
+  for (const char* i51 : {"0", "1", "1", "0"}) {
+    c_.line(std::string("I51=") + i51);
+    EXPECT_EQ(std::stoul(c_.line("RHX$6"), nullptr, 16) >> 14 & 1u, *i51 == '1' ? 1u : 0u);
+  }
+}
+
 // Tables go while the servo task works: a motor whose own are not gone yet is corrected as before, whichever set of
 // them is made anew.
 TEST_F(DesiredPosition, TablesThatGoAreWholeUntilThen) {

@@ -105,6 +105,57 @@ TEST_F(LoopWords, MovementThatIsForgottenBetweenClosures) {
   }
 }
 
+// motion:1.1: registers of the loop are zero whenever it is open, killed or by O.
+TEST_F(LoopWords, AnOpenLoopShowsNothingOfTheOneThatWasClosed) {
+  c_.line("I130=20 I131=0 I132=0 I133=1280 I134=0 I163=4194304");
+  for (const bool killed : {true, false}) {
+    close(0, 0);
+    for (int i = 1; i < 5; ++i) cycle(i * 1000000, 0, 0);
+    ASSERT_NE(position_loop_step(0), 0);
+    ASSERT_NE(position_loop_integral(0), 0);
+    ASSERT_NE(position_loop_filtered(0), 0);
+    if (killed)
+      motor_kill(0);
+    else
+      ASSERT_TRUE(motor_open(0, 500));
+    position_loop_servo(0);
+    EXPECT_EQ(motors[0].output, killed ? 0 : 500);
+    EXPECT_EQ(position_loop_step(0), 0) << killed;
+    EXPECT_EQ(position_loop_integral(0), 0) << killed;
+    EXPECT_EQ(position_loop_filtered(0), 0) << killed;
+    EXPECT_EQ(c_.line("RX$87 RY$87 RX$9E RY$9E RX$AE"), "0|0|0|0|0");
+  }
+}
+
+// Steps of up to 2^36 units count whole, which the smallest gains do not put out at once: Ixx67 = 0, velocity alone.
+TEST_F(LoopWords, LargeStepsCountWhole) {
+  c_.line("I130=1 I131=0 I132=1 I133=0 I135=0 I167=0 I168=0");
+  close(0, 0);
+  std::int64_t at = 0;
+  for (const std::int64_t step :
+       {std::int64_t{1} << 30, std::int64_t{5} << 33, -(std::int64_t{3} << 34), std::int64_t{7} << 33}) {
+    at += step;
+    cycle(at, 0, 0);
+    EXPECT_NEAR(output_, expected_, 0.01) << step;
+    EXPECT_NE(output_, 0);
+  }
+}
+
+// The words of a motor that is not activated are the user's: nobody but him writes them.
+TEST_F(LoopWords, AMotorThatIsNotActivatedShowsNoPosition) {
+  c_.line("M1->D:$88 M2->D:$8B");
+  motors[0].commanded = 70;
+  motors[0].actual = 80;
+  c_.line("M1=5 M2=6");
+  const std::uint32_t active = motors_active;
+  motors_active = active & ~1u;
+  position_loop_show(0);
+  EXPECT_EQ(c_.line("M1 M2"), "5|6");
+  motors_active = active | 1u;
+  position_loop_show(0);
+  EXPECT_EQ(c_.line("M1 M2"), "70|80");
+}
+
 // Two halves of a word are two variables, with their signs.
 TEST_F(LoopWords, HalvesOfAWordAreVariablesOfTheirOwn) {
   c_.line("I132=11 I160=2 I133=13 I163=-14");
