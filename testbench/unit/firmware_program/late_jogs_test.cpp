@@ -39,4 +39,23 @@ TEST(LateJogs, ArePlannedInTheSameRound) {
   EXPECT_GT(longest, 900) << "nothing was late for so long";
 }
 
+// It is planned for the second interrupt from then. That has just come: it is in time, and moves with the next one.
+// Else for the eighth from where it is looked at again.
+TEST(LateJogs, AMomentThatHasJustComeIsInTime) {
+  for (const unsigned within : {0u, 1u, 2u, 3u}) {
+    platform::power_up();
+    ASSERT_EQ(platform::host("I100=1 I119=0.25 I120=0 I121=0 I122=20 I192=0"), "");
+    motors[0].position_scale = 96;
+    motors[0].loop = LOOP_CLOSED;
+    ASSERT_TRUE(jog_to(0, 10 * 32 * 96));
+    unsigned came = 0, pauses = 0;
+    platform::real_time_in_slices([&] {
+      for (++pauses; pauses == 2 && came < within; ++came) jog_servo(0);  // behind its first look
+    });
+    ASSERT_EQ(jogs_asked, 0u);
+    for (; came < 100 && motors[0].trajectory == 0; ++came) jog_servo(0);
+    EXPECT_EQ(came, within <= 2 ? 3u : 3u + 8 + 1) << within;
+  }
+}
+
 }  // namespace
