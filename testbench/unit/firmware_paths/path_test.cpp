@@ -1,4 +1,6 @@
 // The times of a path's moves (motion:4.2), and moves that have none.
+#include <algorithm>
+
 #include "testbench/unit/firmware_program/moving_motors.h"
 
 extern "C" {
@@ -42,6 +44,124 @@ TEST(Path, AnEndIsThePositionThatIsWritten) {
     EXPECT_EQ(point.count, count);
     path_axes_at(&p, &point, position);
     EXPECT_EQ(position[AXIS_X], ends[count - 1]);
+  }
+}
+
+// Up to four moves of a queue that goes round, in ms: times and lengths of the changes at their corners.
+class PathProgress : public ::testing::Test {
+ protected:
+  struct Times {
+    double time, acceleration, s;
+  };
+  void queue(const std::vector<Times>& moves, unsigned first) {
+    p_ = {};
+    p_.first = first;
+    for (const Times& times : moves) {
+      path_set_times(path_of(&p_, p_.count), times.time, times.acceleration, times.s);
+      if (p_.count++ != 0) path_blend(&p_, p_.count - 1, path_time(0));
+    }
+  }
+  static double ms(std::int64_t time) { return static_cast<double>(time) / 4294967296.0; }
+  double change(unsigned i) { return ms(path_of(&p_, i)->change); }
+  double corner(unsigned i) { return ms(path_corner(&p_, i)); }
+  // Of a change about a time, with the share of S that its length has of the acceleration.
+  static double rises(double t, double centre, double length, const Times& of) {
+    const double s = length >= of.acceleration ? of.s : of.s * length / of.acceleration;
+    return risen(t - centre + length / 2, length, s);
+  }
+  static path p_;
+};
+path PathProgress::p_;
+
+// motion:5.2: each move's velocity rises about its corner and falls about the next by what that one gains; the last
+// falls to rest where it stops, as far as its time has room.
+TEST_F(PathProgress, PartsAreTheWaysOfChangesAboutCorners) {
+  const std::vector<Times> all = {{100, 20, 0}, {60, 40, 12}, {35, 50, 25}, {200, 10, 5}};
+  for (unsigned first = 0; first < PATH_MOVES; ++first)
+    for (unsigned count = 1; count <= all.size(); ++count)
+      for (const bool stops : {true, false}) {
+        queue({all.begin(), all.begin() + count}, first);
+        const double stop = std::min(all[count - 1].acceleration, 2 * all[count - 1].time - change(count - 1));
+        EXPECT_NEAR(ms(path_ends(&p_, count)), corner(count) + stop / 2, 1e-8);
+        for (double t = -30; t < corner(count) + stop; t += 1.75) {
+          path_point point;
+          path_at(&p_, {count, stops}, path_time(t), &point);
+          ASSERT_EQ(point.count, count);
+          for (unsigned i = 0; i < count; ++i) {
+            double made = rises(t, corner(i), change(i), all[i]);
+            if (i + 1 < count)
+              made -= rises(t, corner(i + 1), change(i + 1), all[i + 1]);
+            else if (stops)
+              made -= rises(t, corner(count), stop, all[i]);
+            made = std::max(0.0, std::min(1.0, made / all[i].time));
+            ASSERT_NEAR(static_cast<double>(point.parts[i]) / 4611686018427387904.0, made, 1e-9)
+                << t << ", " << i << " of " << count << (stops ? ", stops" : "");
+          }
+        }
+      }
+}
+
+// A change of velocity has the move's acceleration time, as far as the one before leaves room and the corner is ahead.
+TEST_F(PathProgress, ABlendHasTheRoomThatThereIs) {
+  const struct {
+    double time, change, acceleration, now, expected;
+  } cases[] = {{100, 20, 30, 0, 30},  {100, 20, 190, 0, 180}, {100, 20, 30, 84, 30},
+               {100, 20, 30, 86, 28}, {100, 20, 30, 100, 0},  {100, 20, 30, 120, 0},
+               {40, 50, 60, 0, 30},   {40, 0, 60, 0, 60},     {40, 0, 100, -50, 80}};
+  for (const auto& c : cases) {
+    p_ = {};
+    p_.count = 2;
+    path_set_times(&p_.moves[0], c.time, 5, 0);
+    path_set_times(&p_.moves[1], 70, c.acceleration, 0);
+    p_.moves[0].change = path_time(c.change);
+    path_blend(&p_, 1, path_time(c.now));
+    EXPECT_EQ(p_.moves[1].change, path_time(c.expected)) << c.acceleration << " at " << c.now;
+    EXPECT_EQ(path_begins(&p_, 1), path_time(c.time - c.expected / 2));
+    EXPECT_EQ(path_begins(&p_, 0), path_time(-c.change / 2));
+    EXPECT_EQ(path_corner(&p_, 2), path_time(c.time + 70));
+    EXPECT_EQ(path_pop(&p_), path_time(c.time));
+    EXPECT_EQ(p_.first, 1u);
+    EXPECT_EQ(p_.count, 1u);
+    EXPECT_EQ(path_corner(&p_, 1), path_time(70));
+  }
+  p_.first = PATH_MOVES - 1;
+  path_set_times(&p_.moves[PATH_MOVES - 1], 9, 1, 0);
+  EXPECT_EQ(path_pop(&p_), path_time(9));
+  EXPECT_EQ(p_.first, 0u) << "it goes round";
+}
+
+// What of each move is made adds up from where the first one begins; the way of one that stands has no direction.
+TEST_F(PathProgress, AxesAreWhereTheirMovesHaveThem) {
+  queue({{10, 1, 0}, {10, 1, 0}, {10, 1, 0}}, 2);
+  double at[AXIS_COUNT] = {}, to[AXIS_COUNT];
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned axis = 0; axis < AXIS_COUNT; ++axis) {
+      path_move* m = path_of(&p_, i);
+      m->start[axis] = i == 0 ? axis : path_of(&p_, i - 1)->end[axis];
+      m->delta[axis] = axis == AXIS_V ? 0 : 10.0 * i + axis - 3;
+      m->end[axis] = m->start[axis] + m->delta[axis];
+    }
+  const std::int64_t parts[][3] = {{0, 0, 0},
+                                   {PATH_WHOLE / 4, 0, 0},
+                                   {PATH_WHOLE, PATH_WHOLE / 2, 0},
+                                   {PATH_WHOLE / 8 * 7, PATH_WHOLE / 8, 0},
+                                   {PATH_WHOLE, PATH_WHOLE, PATH_WHOLE / 16},
+                                   {PATH_WHOLE, PATH_WHOLE, PATH_WHOLE}};
+  for (const auto& part : parts) {
+    path_point point = {3, {part[0], part[1], part[2]}};
+    path_axes_at(&p_, &point, at);
+    for (unsigned axis = 0; axis < AXIS_COUNT; ++axis) {
+      double expected = axis;
+      for (unsigned i = 0; i < 3; ++i)
+        expected += path_of(&p_, i)->delta[axis] * static_cast<double>(part[i]) / static_cast<double>(PATH_WHOLE);
+      EXPECT_NEAR(at[axis], expected, 1e-12) << axis;
+    }
+  }
+  for (const bool stands : {false, true}) {
+    path_of(&p_, 1)->stands = stands;
+    path_direction(path_of(&p_, 1), 0.5, to);
+    for (unsigned axis = 0; axis < AXIS_COUNT; ++axis)
+      EXPECT_EQ(to[axis], stands || axis == AXIS_V ? 0.0 : 10.0 + axis - 3) << axis;
   }
 }
 

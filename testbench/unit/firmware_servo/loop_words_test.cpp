@@ -141,6 +141,20 @@ TEST_F(LoopWords, LargeStepsCountWhole) {
   }
 }
 
+// Movement counts from a start on, activated or not: of both words, and of the variables as they are then.
+TEST_F(LoopWords, MovementCountsFromTheStartOn) {
+  c_.line("I100=0");
+  at(70, 90);
+  position_loop_initialize();
+  position_loop_begin(1);
+  motors[0].actual = 0;
+  at(70 + 1000, 90 + 640);
+  c_.line("I100=1");
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, 1000 * 96);
+  EXPECT_EQ(motors[0].velocity, 640 * 96);
+}
+
 // The words of a motor that is not activated are the user's: nobody but him writes them.
 TEST_F(LoopWords, AMotorThatIsNotActivatedShowsNoPosition) {
   c_.line("M1->D:$88 M2->D:$8B");
