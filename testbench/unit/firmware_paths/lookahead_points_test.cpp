@@ -178,4 +178,45 @@ TEST_F(LookaheadPoints, PointsOfASegmentGoRound) {
   }
 }
 
+// motion:7.5/7: Ixx24 bit 15, Ixx13 and Ixx14 nearer by Ixx41: what lies beyond is the limit, and with bit 14 = 0 the
+// sequence stops before the first segment that this changes. One that begins further out may stay there.
+TEST_F(LookaheadPoints, PointsBeyondALimitAreHeldThere) {
+  constexpr std::int64_t kCount = 3072;
+  ASSERT_EQ(host("I113=100 I114=-50 I141=10"), "");  // 90 and -40
+  for (const bool saturates : {false, true})
+    for (const bool guarded : {true, false})
+      for (const std::int64_t begins : {0, 95, -70}) {
+        SCOPED_TRACE(::testing::Message() << saturates << guarded << " from " << begins);
+        ASSERT_EQ(host(std::string("I124=$") + (saturates ? guarded ? "2C001" : "24001"
+                                                : guarded ? "28001"
+                                                          : "20001")),
+                  "");
+        const look& l = begin(5);
+        EXPECT_EQ(l.guarded, guarded ? 1u : 0u);
+        const std::int64_t highest = std::max<std::int64_t>(90, begins), lowest = std::min<std::int64_t>(-40, begins);
+        const std::int64_t path[] = {begins, 80, 90, 91, 96, 60, -40, -41, -75, 0, 20, 200};
+        std::vector<bool> stops(std::size(path), false);
+        std::uint32_t n = 0;
+        for (const std::int64_t to : path) {
+          add(to * kCount, 500 * kCount, n);
+          const bool out = guarded && (to > highest || to < lowest);
+          const std::int64_t is = !guarded ? to : std::max(lowest, std::min(highest, to));
+          EXPECT_EQ(lookahead_motors(&l.buffer, n)[0].point, is * kCount) << to;
+          EXPECT_EQ(lookahead_motors(&l.buffer, n)[1].point, 500 * kCount) << "it has no limits";
+          if (out && !saturates) stops[n < 3 ? n : n - 3] = true;
+          ++n;
+        }
+        for (n = 0; n < std::size(path); ++n) EXPECT_EQ(lookahead_at(&l.buffer, n)->stops, stops[n]) << n;
+        system_motors_come_along(0);
+        lookahead_close(0);
+        EXPECT_TRUE(l.closed);
+        EXPECT_EQ(system_motor_aside(0), guarded ? static_cast<double>((highest - 200) * kCount) : 0.0);
+        EXPECT_EQ(system_motor_aside(1), 0.0);
+      }
+  for (const char* isx20 : {"1", "2"}) {
+    ASSERT_EQ(host(std::string("I124=$28001 I5120=") + isx20), "");
+    EXPECT_EQ(begin(5).guarded, *isx20 == '2' ? 1u : 0u) << "limits are those of Isx20 above 1";
+  }
+}
+
 }  // namespace
