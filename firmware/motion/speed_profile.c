@@ -78,6 +78,7 @@ static double peak_speed(const struct speed_limits* l, double from, double dista
 
 /* At `speed` as long as the rest of a distance takes. */
 static struct speed_plan stay_for(double speed, double rest) {
+  slice_pause();
   const struct speed_plan plan = {speed, rest / speed};
   slice_pause();
   return plan;
@@ -92,6 +93,7 @@ static struct speed_plan plan_forward(const struct speed_limits* l, double from,
   if (from > 0.0) {
     const double stop = change_distance(l, from, 0.0);
     const double kept = from * l->shortest;
+    slice_pause();
     if (from >= top || distance < stop + kept) return stay_for(from, distance - stop);
   }
   return (struct speed_plan){peak_speed(l, from, distance), 0.0};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "testbench/unit/covers.h"
@@ -60,6 +61,14 @@ TEST_F(MotionImage, JogsPauseInTime) {
   for (const char* jog : {"#1J+", "J/", "J:1000000", "J:-100", "J/", "J:30", "J-", "J^2000", "J="}) {
     accepted(jog);
     board.run_ms(5);
+  }
+  // A new end too near to become faster before it: 10 counts/ms stop within 100 + 10 ms, 550 counts, and a change to
+  // the new speed lasts 50 ms at least, 500 counts.
+  const std::pair<const char*, double> jogs[] = {
+      {"I122=10 J+", 150}, {"I122=20 J:900", 5}, {"I122=10 J-", 300}, {"I122=20 J:-900", 5}};
+  for (const auto& [jog, ms] : jogs) {
+    accepted(jog);
+    board.run_ms(ms);
   }
   // A ramp from the cubic of a move.
   accepted("J/");
