@@ -197,6 +197,26 @@ TEST_F(LookaheadRates, ASegmentAloneIsTwoHalves) {
   }
 }
 
+// The w between both halves is the lesser of what they allow, from either side: that of a segment that is run through
+// the other way round is the same. Where its cap leaves nothing it creeps.
+TEST_F(LookaheadRates, ASegmentAloneKeepsToTheLimitsOfBothHalves) {
+  constexpr std::int32_t kTurns = 40 << BEND_BITS;
+  const auto middle = [this](std::int32_t pace, std::int32_t from, std::int32_t to) {
+    lookahead_motors(&l.buffer, 4)[0] = {0, pace, from};
+    lookahead_motors(&l.buffer, 5)[0] = {0, pace + (from + to) / 2, to};
+    stand_at(4, 0, 0);
+    l.single = true;
+    released();
+    return l.rate / kFull;
+  };
+  const double grows = middle(0, 0, kTurns), mirrored = middle(-kTurns / 2, kTurns, 0);
+  EXPECT_GT(grows, 0.01);
+  EXPECT_LT(grows, 0.5) << "nothing limits it";
+  EXPECT_NEAR(mirrored, grows, 0.002 * grows);
+  at(4).cap = 0;
+  EXPECT_EQ(middle(0, 0, 0), 1 / kFull);
+}
+
 // Without accelerations that limit it, w at a knot is the lesser of the caps at both sides; 0 at a stop on the way
 // forwards. At the ends of a sequence that is closed one side counts.
 TEST_F(LookaheadRates, ASweepKeepsToTheCapsOfBothSides) {
@@ -211,7 +231,7 @@ TEST_F(LookaheadRates, ASweepKeepsToTheCapsOfBothSides) {
       l.swept = l.good = 0;
       l.sweeping = l.swept_back = false;
       for (std::uint32_t i = 0; i < kPoints; ++i) {
-        at(i).cap = i < kEnd ? caps[i] << 15 : RATE_FULL;
+        at(i).cap = (i < kEnd ? caps[i] : 50) << 15;  // behind the end and before the oldest there is none yet
         at(i).stops = i == 4;
         at(i).rate = -1;
       }
