@@ -48,7 +48,7 @@ const struct fixed_program* fixed_program_opened(void);            /* 0: none */
 error_t fixed_program_append(const word48_t* words, uint32_t count);
 void fixed_program_drop_last(void); /* its last word */
 void fixed_program_clear(void);
-void fixed_program_close(void); /* an empty one is gone */
+void fixed_program_close(void); /* an empty one is gone; one is open */
 
 /* Erases all programs of these kinds, a bit each; none is open. */
 void fixed_programs_erase(uint32_t kinds);

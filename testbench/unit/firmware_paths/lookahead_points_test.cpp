@@ -117,7 +117,7 @@ TEST_F(LookaheadPoints, KnotsAndCapsOfAPath) {
   EXPECT_GT(bent, 50u);
 }
 
-// Isx20 segments, four at least, as far as the buffer has room behind the eight that are kept.
+// motion:7.3/2: Isx20 segments, four at least, as far as the buffer has room behind the eight that are kept.
 TEST_F(LookaheadPoints, ItsLengthIsIsx20OrTheRoomThatThereIs) {
   const struct {
     unsigned records, isx20, length;
@@ -178,8 +178,8 @@ TEST_F(LookaheadPoints, PointsOfASegmentGoRound) {
   }
 }
 
-// motion:7.5/7: Ixx24 bit 15, Ixx13 and Ixx14 nearer by Ixx41: what lies beyond is the limit, and with bit 14 = 0 the
-// sequence stops before the first segment that this changes. One that begins further out may stay there.
+// motion:7.5/6, motion:7.5/7: Ixx24 bit 15, Ixx13 and Ixx14 nearer by Ixx41: what lies beyond is the limit, and with
+// bit 14 = 0 the sequence stops before the first segment that this changes. One that begins further out may stay there.
 TEST_F(LookaheadPoints, PointsBeyondALimitAreHeldThere) {
   constexpr std::int64_t kCount = 3072;
   ASSERT_EQ(host("I113=100 I114=-50 I141=10"), "");  // 90 and -40

@@ -210,9 +210,8 @@ TEST_F(LookaheadRates, ASegmentAloneKeepsToTheLimitsOfBothHalves) {
     return l.rate / kFull;
   };
   const double grows = middle(0, 0, kTurns), mirrored = middle(-kTurns / 2, kTurns, 0);
-  EXPECT_GT(grows, 0.01);
-  EXPECT_LT(grows, 0.5) << "nothing limits it";
-  EXPECT_NEAR(mirrored, grows, 0.002 * grows);
+  EXPECT_NEAR(grows, 1.0 / 25, 0.0002) << "x'' = 20 and x' = 5 with w' = 2 w at the end of the first half: 25 w = 1";
+  EXPECT_NEAR(mirrored, 1.0 / 25, 0.0002);
   at(4).cap = 0;
   EXPECT_EQ(middle(0, 0, 0), 1 / kFull);
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -66,9 +67,14 @@ TEST_F(MotionImage, JogsPauseInTime) {
   // the new speed lasts 50 ms at least, 500 counts.
   const std::pair<const char*, double> jogs[] = {
       {"I122=10 J+", 150}, {"I122=20 J:900", 5}, {"I122=10 J-", 300}, {"I122=20 J:-900", 5}};
+  accepted("M88->D:$88");  // 1/3072 count
   for (const auto& [jog, ms] : jogs) {
     accepted(jog);
     board.run_ms(ms);
+    if (ms < 100) continue;
+    const double from = value("M88");
+    board.run_ms(10);
+    EXPECT_NEAR(std::abs(value("M88") - from) / 3072, 10 * 10, 15) << "at the speed of the jog, and of two replies";
   }
   // A ramp from the cubic of a move.
   accepted("J/");

@@ -214,7 +214,10 @@ TEST_F(LoopWords, EachMotorHasWordsOfItsOwn) {
   for (const unsigned motor : {0u, 1u, 2u, 31u, 32u, 33u}) {
     SCOPED_TRACE(motor);
     EXPECT_EQ(c_.line("M1->D:" + at(motor, 0x4C) + " M2->D:" + at(motor, 0x10)), "");
+    static unsigned unmasked;
+    unmasked = 0;
     fake_hal_on_unmask([] {  // no servo interrupt sees one half of it
+      ++unmasked;
       for (const struct motor& m : motors) {
         EXPECT_TRUE(m.bias == 0 || m.bias == -5) << m.bias;
         EXPECT_TRUE(m.compensation == 0 || m.compensation == 16777220) << m.compensation;
@@ -223,6 +226,7 @@ TEST_F(LoopWords, EachMotorHasWordsOfItsOwn) {
     const std::string reply = c_.line("M1=-5 M2=16777220");
     fake_hal_on_unmask(nullptr);
     EXPECT_EQ(reply, "");
+    EXPECT_GE(unmasked, 2u) << "one each";
     EXPECT_EQ(c_.line("WX" + at(motor, 0x0D) + ",3 WY" + at(motor, 0x0D) + ",7 WX" + at(motor, 0x3F) + ",11"), "");
     for (unsigned i = 0; i < MOTORS; ++i) {
       const bool is_it = i + 1 == motor;
