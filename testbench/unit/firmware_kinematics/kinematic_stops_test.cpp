@@ -158,6 +158,18 @@ TEST_F(KinematicStops, WordsCountWhereTheClockStands) {
   EXPECT_EQ(p(9), (5000 - 1 + 1) / 8);
 }
 
+// A start that its forward program fails is over with that: the program does not run once more, as of a PMATCH.
+TEST_F(KinematicStops, AStartThatFailsIsNoPmatch) {
+  fit_arm();
+  program("FORWARD", {"P4=P4+1", "WHILE(1=1)", "ENDWHILE"});
+  store({"DWELL100"});
+  ASSERT_EQ(host("P4=0 &1B1R"), "");
+  platform::servo_ticks(300);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(cs().error, RUN_TIME_KINEMATIC);
+  EXPECT_EQ(p(4), 1);
+}
+
 // A PMATCH that waits when R comes is what R does itself: the forward program runs once for both.
 TEST_F(KinematicStops, AStartTakesThePlaceOfAPmatchThatWaits) {
   unsigned before = 0, behind = 0;

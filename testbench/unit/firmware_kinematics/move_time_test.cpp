@@ -100,7 +100,7 @@ TEST_F(MoveTime, ADwellIsNoMove) {
 // motion:8.3/3
 TEST_F(MoveTime, WithoutASlotInLookaheadItIsLostAndSaidSo) {
   ASSERT_EQ(host("DELETE GATHER I5114=-1 I5113=10 I5120=60 I116=100 I117=1"), "");
-  for (const bool slot : {true, false}) {
+  for (const bool slot : {true, false, true}) {
     ASSERT_EQ(host(std::string("&1DEFINE LOOKAHEAD 300,") + (slot ? "1" : "0")), "");
     ASSERT_EQ(host("I5111=0"), "");
     store({"TM100 TA40 TS10 INC", "MOVETIME X1"});
@@ -142,6 +142,20 @@ TEST_F(MoveTime, LongerThanATimer) {
     platform::servo_ticks(3);
     EXPECT_NEAR(std::stod(host("I5111")), 8388607, 10);
   }
+}
+
+// One that has asked for the time of its next move and is left for another program has asked for none of that one.
+TEST_F(MoveTime, OfTheProgramThatAsksForIt) {
+  store({"MOVETIME P1=1 WHILE(P2=0) WAIT", "X1"});
+  store({"TM100 TA40 TS10 X1", "DWELL100"}, 2);
+  ASSERT_EQ(host("I5114=-1 I5111=0 P2=0 B1R"), "");
+  platform::servo_ticks(30);
+  ASSERT_EQ(host("A"), "");
+  platform::servo_ticks(30);
+  double most = 0;
+  run([&](double) { most = std::max(most, std::stod(host("I5111"))); }, "B2R");
+  EXPECT_EQ(most, 0);
+  EXPECT_EQ(at(1), 1000);
 }
 
 }  // namespace

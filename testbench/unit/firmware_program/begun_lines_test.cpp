@@ -297,4 +297,59 @@ TEST_F(BegunLines, APointWithinAnAbortHasTheWholeProgram) {
   EXPECT_GT(within, 10u) << "one for each word that is skipped";
 }
 
+// A block that was begun is of its program alone: a step in the next one is a move.
+TEST_F(BegunLines, ABlockEndsWithItsProgram) {
+  store(1, {"TM10TA2TS0 BLOCKSTART", "X1", "WHILE(P9=0) WAIT"});
+  store(2, {"X2", "X3"});
+  ASSERT_EQ(host("B1R"), "");
+  platform::servo_ticks(150);
+  ASSERT_EQ(host("A"), "");
+  platform::servo_ticks(9);
+  ASSERT_EQ(host("B2S"), "");
+  ASSERT_TRUE(finish());
+  EXPECT_EQ(x(), 2.0);
+}
+
+// A value that READ was at is read by nobody, whatever is pointed to before the abort is settled.
+TEST_F(BegunLines, AnAbortWithinReadLeavesNoPlaceToGoBackTo) {
+  for (unsigned slices = 1; slices <= 60; slices += 3) {
+    platform::power_up();
+    store(7, {"READ(X,Y)", "P40=1"});
+    store(1, {"CALL7 X(P1+P2+P3+P4+P5+P6) Y(P1+P2+P3+P4+P5+P6)", "P41=1"});
+    store(2, {"P30=1 P31=1", "P32=1"});
+    ASSERT_EQ(host("B1R"), "");
+    fake_hal_on_pause([] {});
+    fake_hal_slices_leave(true);
+    for (unsigned i = 0; i < slices; ++i) fake_task_run_real_time();
+    ASSERT_EQ(host("A"), "");
+    ASSERT_EQ(host("B2"), "");
+    fake_hal_slices_leave(false);
+    fake_hal_on_pause(nullptr);
+    platform::servo_ticks(9);
+    ASSERT_EQ(host("R"), "");
+    ASSERT_TRUE(finish());
+    EXPECT_FALSE(error());
+    EXPECT_EQ(host("P30..32 PC"), "1|1|1|P2:0") << slices;
+  }
+}
+
+// A stop that comes right behind a start is one before the first word, be the program before it left within a line.
+TEST_F(BegunLines, AResetWithinALineHoldsUpNoStop) {
+  store(1, {"P1=1 P2=1 P3=1 P4=1 P5=1 P6=1 P7=1 P8=1 P9=1"});
+  store(2, {"P5=1"});
+  ASSERT_EQ(host("P1..9=0 SAVE B1R"), "");
+  fake_hal_on_pause([] {});
+  fake_hal_slices_leave(true);
+  for (unsigned i = 0; i < 100 && p(4) == 0.0; ++i) fake_task_run_real_time();
+  fake_hal_slices_leave(false);
+  fake_hal_on_pause(nullptr);
+  ASSERT_EQ(host("P4 P9"), "1|0");
+  platform::reset();
+  ASSERT_EQ(host("P5=0 B2R"), "");
+  ASSERT_EQ(host("Q"), "");
+  platform::servo_ticks(9);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(host("P5"), "0");
+}
+
 }  // namespace

@@ -213,4 +213,50 @@ TEST_F(OwnStops, AStartBehindAStopOfWhatStillMovesIsNeverRefused) {
     }
 }
 
+// Bits 5 and 2 of word 3, a dwell at a corner and a start that was refused: an abort ends the one, an error that stops
+// the program the other.
+TEST_F(OwnStops, WhatAProgramStoodForIsOverWithIt) {
+  const auto word3 = [] { return static_cast<unsigned>(std::stoul(host("??").substr(12, 6), nullptr, 16)); };
+  begin("I5192=1 I5182=1000");
+  store({"LINEAR TM30 TA20 TS0 X1", "X2"});
+  ASSERT_EQ(host("B1R"), "");
+  ticks(100);
+  ASSERT_EQ(word3() >> 5 & 1u, 1u);
+  ASSERT_EQ(host("A"), "");
+  ticks(20);
+  EXPECT_EQ(word3() >> 5 & 1u, 0u);
+
+  begin("I122=50");
+  store({"LINEAR TM500 TA20 TS0 X1"});
+  ASSERT_EQ(host("B1R"), "");
+  orders({"H"});
+  ticks(100);
+  ASSERT_EQ(host("#1J:50"), "");
+  ticks(100);
+  ASSERT_EQ(host("R"), "ERR017");
+  ASSERT_EQ(word3() >> 2 & 1u, 1u);
+  ASSERT_EQ(host("WY$203F,$400000"), "");
+  ticks(50);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(number(), "13");
+  EXPECT_EQ(word3() >> 2 & 1u, 0u);
+  EXPECT_EQ(host("R"), "") << "there is no way back";
+}
+
+// A PVT move that ends in motion is ramped to rest behind the end of its program: the next start begins from rest.
+TEST_F(OwnStops, ASpeedEndsWithItsProgram) {
+  begin("I5190=1");
+  store({"PVT100 X1:0.02"});
+  store({"PVT100 X3:0"}, 2);
+  ASSERT_EQ(host("B1R"), "");
+  ticks(500);
+  ASSERT_FALSE(run_is_running(0));
+  ASSERT_EQ(host("B2R"), "");
+  for (int i = 0; i < 100 && !cs().active; ++i) platform::servo_ticks(1);
+  ASSERT_TRUE(cs().active);
+  EXPECT_EQ(cs().moves[cs().executing].knots[0].velocity[AXIS_X], 0.0);
+  ticks(500);
+  EXPECT_EQ(motors[0].trajectory, std::llround(3000 * kUnit));
+}
+
 }  // namespace

@@ -116,4 +116,22 @@ TEST_F(RunTimeErrors, OneInACalledProgramTakesTheLineThatCalls) {
   EXPECT_EQ(host("P1..6"), "0|0|0|0|0|6") << "no way back into the programs";
 }
 
+// What an abort has dropped is nothing that later assignments count: the first one comes with the next program's move.
+TEST_F(RunTimeErrors, BehindAnAbortAssignmentsComeWithTheirMoves) {
+  store(1, {"TM60TA10TS0 X1", "X2", "X3"});
+  store(2, {"TM60TA10TS0 M1==5 X4", "M1==6 X5", "X6"});
+  ASSERT_EQ(host("M1->X:$10F0,0,24 M1=0 B1R"), "");
+  platform::servo_ticks(60);
+  ASSERT_TRUE(coordinate_systems[0].next_valid);
+  ASSERT_EQ(host("A"), "");
+  platform::servo_ticks(9);
+  const std::uint32_t started = coordinate_systems[0].started;
+  ASSERT_EQ(host("B2R"), "");
+  for (unsigned move = 1; move <= 2; ++move) {
+    for (unsigned i = 0; i < 1000 && coordinate_systems[0].started - started < move; ++i) platform::servo_ticks(1);
+    platform::servo_ticks(3);
+    EXPECT_EQ(host("M1"), std::to_string(4 + move));
+  }
+}
+
 }  // namespace
