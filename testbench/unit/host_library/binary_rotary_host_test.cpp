@@ -51,6 +51,20 @@ class BinaryRotaryHostTest : public ::testing::Test {
   BinaryRotary rotary_{bus_, 3};
 };
 
+// Once the controller's index is the host's.
+TEST_F(BinaryRotaryHostTest, IsEmptyWhereTheControllerHasTakenAll) {
+  ASSERT_EQ(rotary_.define(0, 40), BinaryResult::kOk);
+  EXPECT_TRUE(rotary_.empty());
+  ASSERT_EQ(rotary_.put(commands(3)), BinaryResult::kOk);
+  EXPECT_FALSE(rotary_.empty());
+  const std::uint16_t index = fake().memory[kHost];
+  ASSERT_NE(index, 0);
+  for (const auto& [taken, empty] : {std::pair{index - 1, false}, {static_cast<int>(index), true}}) {
+    fake().memory[kPmac] = static_cast<std::uint16_t>(taken);
+    EXPECT_EQ(rotary_.empty(), empty) << taken;
+  }
+}
+
 // host-bus:7.4/2: off before anything, status 0 the last.
 TEST_F(BinaryRotaryHostTest, IsDefinedOffEmptyAndWithoutAnError) {
   EXPECT_EQ(rotary_.recover(), BinaryResult::kError) << "there is none yet";

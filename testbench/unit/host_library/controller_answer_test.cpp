@@ -197,6 +197,9 @@ TEST(OutputQueue, LinesEndAtReturnAcknowledgeOrLineFeed) {
   queue.add("12345\r6");
   EXPECT_EQ(queue.take_line(4), "1234") << "no more than is asked for";
   EXPECT_EQ(queue.take_line(4), "5\r");
+  queue.add("789");
+  EXPECT_EQ(queue.take_line(5), std::nullopt) << "6789 goes on";
+  EXPECT_EQ(queue.take_line(4), "6789") << "as much as is asked for";
 }
 
 TEST(OutputQueue, HasALimit) {
