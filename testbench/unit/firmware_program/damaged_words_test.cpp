@@ -5,6 +5,7 @@
 #include "testbench/unit/firmware_program/motion_program.h"
 
 extern "C" {
+#include "firmware/buffers/user_memory.h"
 #include "firmware/language/lister.h"
 #include "firmware/language/statement_argument.h"
 }
@@ -177,6 +178,20 @@ TEST_F(DamagedPrograms, EndWithTheirLastWord) {
     EXPECT_EQ(host("P1..2"), "1|2");
     EXPECT_EQ(plc_enabled(), 2u);
   }
+}
+
+// The marks of its lines gone, a program is one line, longer than any that a host can give.
+TEST_F(DamagedPrograms, ALineLongerThanAHostCanGiveIsExecuted) {
+  store(1, std::vector<std::string>(200, "P1=P1+1"));  // 4 words each
+  std::uint32_t marks = 0;
+  for (std::uint32_t at = 1; at < 800; ++at) {
+    marks += (user_memory_read(at) & WORD_START_OF_LINE) != 0 ? 1 : 0;
+    user_memory_write(at, user_memory_read(at) & ~WORD_START_OF_LINE);
+  }
+  ASSERT_GE(marks, 199u);
+  ASSERT_EQ(host("P1=0 B1R"), "");
+  ASSERT_TRUE(finish());
+  EXPECT_EQ(host("P1"), "200");
 }
 
 }  // namespace
