@@ -88,7 +88,7 @@ class Readers(unittest.TestCase):
             judge = native.Judge.__new__(native.Judge)
             judge.root, judge.tree, judge.module = root, root / "build", None
             judge.programs = {"p": types.SimpleNamespace(readers=lambda _: list(commands), compiles=commands,
-                                                         read=dict.fromkeys(commands, {str(root / "app/a.h")}))}
+                                                         read={target: {str(root / "app/a.h")} for target in commands})}
             with mock.patch.object(native, "sources_of", return_value=[root / "app/a.h"]):
                 read_by = [c[2] for c in judge.compilations()["app/a.h"]]
         self.assertEqual(read_by, sources[:2])
