@@ -308,7 +308,7 @@ static void calculate_round(void) {
 void calculate_initialize(void) {
   calculated = COORDINATE_SYSTEMS;
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
-    motion_program_point(cs, true, 0, PROGRAM_TOP);
+    motion_program_point(cs, true, 0, program_top);
     segment_forget(cs);
   }
   synchronous_initialize();

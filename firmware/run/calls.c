@@ -33,7 +33,7 @@ enum reader_result calls_find(uint32_t program, uint32_t label, struct program_e
   struct program_reader reader;
   word48_t word;
   enum reader_result found;
-  *entry = PROGRAM_TOP;
+  *entry = program_top;
   if (label == 0) return reader_check(FIXED_PROG, program);
   reader_fixed(&reader, FIXED_PROG, program, 0);
   for (; (found = reader_peek(&reader, 0, &word)) == READER_WORD; slice_pause()) {

@@ -39,7 +39,7 @@ void motion_program_drop_line(struct motion_program* p) {
 
 void motion_program_restart(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  motion_program_point(cs, s->pointer == POINTER_ROTARY, s->fixed_program, PROGRAM_TOP);
+  motion_program_point(cs, s->pointer == POINTER_ROTARY, s->fixed_program, program_top);
 }
 
 /* Program and line of a position; program 0 is the rotary buffer. */

@@ -33,7 +33,7 @@ struct motion_program {
   uint32_t jumps_begin; /* x.jumps_back at its begin, or at the last move */
 };
 
-#define PROGRAM_TOP ((struct program_entry){0, 0})
+static const struct program_entry program_top = {0, 0};
 
 extern struct motion_program motion_programs[COORDINATE_SYSTEMS];
 

@@ -50,7 +50,7 @@ error_t run_point(uint32_t cs, double program) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->running) return ERR_PROGRAM_RUNNING;
   uint32_t number, label;
-  struct program_entry entry = PROGRAM_TOP;
+  struct program_entry entry = program_top;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
   if (s->next_valid || paths[cs].count != 0) {
     s->settling = true;
@@ -61,7 +61,7 @@ error_t run_point(uint32_t cs, double program) {
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
     s->pointer = POINTER_ROTARY;
-    point(cs, 0, PROGRAM_TOP);
+    point(cs, 0, program_top);
     return ERR_NONE;
   }
   s->fixed_program = number;
