@@ -46,6 +46,7 @@ TEST(CommandFile, PasswordsStayAsTheyAre) {
   EXPECT_THAT(lines("#define X 7\nPASSWORD=a;b\nP1=X Password =a//X/*\t; \n/* a */ PASSWORD=\"X;\nP2=X ; rest\n"),
               ElementsAre("job.pmc:2 PASSWORD=a;b", "job.pmc:3 P1=7 Password =a//X/* ;", "job.pmc:4 PASSWORD=\"X;",
                           "job.pmc:5 P2=7"));
+  EXPECT_THAT(lines("#define X 7\nPASSWORD=X\nX\n"), ElementsAre("job.pmc:2 PASSWORD=X", "job.pmc:3 7"));
   EXPECT_THAT(lines("#define X 7\nSEND\"PASSWORD=\" P1=X ; rest\nPASSWORD X ;\n; PASSWORD=\n/* PASSWORD= */X// a\n"),
               ElementsAre("job.pmc:2 SEND\"PASSWORD=\" P1=7", "job.pmc:3 PASSWORD 7", "job.pmc:5 7"));
 }

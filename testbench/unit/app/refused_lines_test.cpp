@@ -50,8 +50,11 @@ TEST(ByteText, LetsNothingThroughThatActsOnATerminal) {
   EXPECT_EQ(readable_text("\xED\xA0\x80|\xC2\x85|\xC0\x8A|\xE2\x82|\xF4\x90\x80\x80"),
             "<ED><A0><80>|<C2><85>|<C0><8A>|<E2><82>|<F4><90><80><80>");
   EXPECT_EQ(readable_text("\xE2\x82\xAC\xF0\x9F\x98\x80"), "\xE2\x82\xAC\xF0\x9F\x98\x80");
+  EXPECT_EQ(readable_text("\xF8\x90\x80\x80|\xFB\x90\x80\x80"), "<F8><90><80><80>|<FB><90><80><80>");
   EXPECT_EQ(utf8_text("a\x06\xC3\xBC\xC3"), "a\x06\xC3\xBC<C3>");
-  EXPECT_EQ(visible_bytes("a\x06\xC3\xBC~"), "a<06><C3><BC>~");
+  EXPECT_EQ(visible_bytes("a\x06\xC3\xBC~\x7F"), "a<06><C3><BC>~<7F>");
+  EXPECT_EQ(cut_text("12", 2), "12");
+  EXPECT_EQ(beginning_of("12", 2), "`12`");
   EXPECT_EQ(cut_text("\x1B"
                      "234",
                      2),

@@ -1,6 +1,8 @@
 // Host scripts: what is read, and that every error says file and line, what, and what was expected.
 #include "app/script.h"
 #include "app/hand_encoder.h"
+#include "app/line_reader.h"
+#include "app/place.h"
 
 #include <gmock/gmock.h>
 
@@ -68,6 +70,44 @@ TEST(Script, ReadsEveryKindOfLine) {
 }
 
 // Values as @signal prints them: of a counter that has gone down, of a bus.
+// As much as there is, and nothing of what is not named.
+TEST(Script, TakesTheLastWordTheFastestTurnAndOneRegister) {
+  const auto s = read("@dpram 65534 1\n@dpram 0 32768\n@encoder 1 5 9830400\n@pic ELR=1\n@pic MSK=2\n");
+  ASSERT_EQ(s.size(), 5u);
+  EXPECT_EQ(s[0].count, 1u);
+  EXPECT_EQ(s[1].count, 32768u);
+  EXPECT_EQ(s[2].rate, 9'830'400);
+  EXPECT_EQ(s[3].mask, -1);
+  EXPECT_EQ(s[3].edge_level, 1);
+  EXPECT_EQ(s[4].mask, 2);
+  EXPECT_EQ(s[4].edge_level, -1);
+}
+
+TEST(LineReader, EndsAtACommentWhereThereAreSome) {
+  LineReader with("a # b", '#'), without("a # b");
+  EXPECT_EQ(with.word("a"), "a");
+  EXPECT_TRUE(with.at_end());
+  for (const char* word : {"a", "#", "b"}) EXPECT_EQ(without.word("a word"), word);
+  EXPECT_TRUE(without.at_end());
+  EXPECT_EQ(LineReader("x9").name("a name"), "x9");
+  EXPECT_THROW(LineReader("9x").name("a name"), UsageError);
+  EXPECT_THROW(LineReader("").name("a name"), UsageError);
+}
+
+TEST(LineReader, KnowsATimeBeforeItIsRead) {
+  for (const char* time : {"10ms", "10 ms", "2.5us 7", "0 s"}) EXPECT_TRUE(LineReader(time).time_follows()) << time;
+  for (const char* other : {"", "10", "10 7 ms", "ms", "x1ms", "10 m"})
+    EXPECT_FALSE(LineReader(other).time_follows()) << other;
+}
+
+TEST(Place, IsAHostAndAPort) {
+  const auto port_of = [](const char* text) { return parse_place("--listen", text, "localhost:1025").port; };
+  EXPECT_EQ(port_of("h:65535"), "65535");
+  EXPECT_EQ(port_of("h:00080"), "00080");
+  for (const char* bad : {"h", "h:", ":1", "h:65536", "h:000080", "h:-1", "h:1x"})
+    EXPECT_THROW(port_of(bad), UsageError) << bad;
+}
+
 TEST(Script, WaitsForEveryKindOfValue) {
   const auto s = read("@until ch1.count=-37 5ms\n@until bus.addr=$78004 5ms\n@until cpu.symbol=main 2.5 us\n");
   EXPECT_EQ(s[0].value, "-37");
@@ -88,6 +128,7 @@ TEST(Script, ErrorsSayWhereWhatAndWhatWasExpected) {
                           "@signal",
                           "@pic MSK=100",
                           "@pic FOO=1",
+                          "@pic clear MSK=1",
                           "@dpram 1 2",
                           "@dpram 65536 1",
                           "@dpram 65534 2",
