@@ -81,11 +81,18 @@ static error_t control(struct lexer* lx, void (*action)(uint32_t cs)) {
 static error_t cmd_quit(struct lexer* lx) { return control(lx, run_quit); }
 static error_t cmd_abort(struct lexer* lx) { return control(lx, motors_abort); }
 
-static error_t cmd_abort_and_run(struct lexer* lx) { /* ABR{n}; neither a value that is none nor a word follows */
+/* A word or a value, of whatever sort. */
+static bool begins_something(char c) {
+  for (const char* sign = "+-.,=($"; *sign != '\0'; sign++)
+    if (c == *sign) return true;
+  return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z');
+}
+
+static error_t cmd_abort_and_run(struct lexer* lx) { /* ABR{n}; what is refused aborts nothing */
   double program = 0.0;
-  const bool has_value = lexer_value_starts(*lx), has_number = lexer_constant(lx, &program) == ERR_NONE;
   const char next = lexer_peek(lx);
-  if (!has_number && (has_value || (next >= 'A' && next <= 'Z'))) return ERR_DATA;
+  const bool has_number = lexer_constant(lx, &program) == ERR_NONE;
+  if (!has_number && begins_something(next)) return ERR_DATA;
   return restart_begin(session.cs, has_number, program);
 }
 

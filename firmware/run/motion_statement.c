@@ -65,15 +65,17 @@ static void set_position(uint32_t cs) {
 }
 
 enum executed motion_plan_line(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
   axis_matrix_line(cs);
-  if (coordinate_systems[cs].sets_position) {
+  if (s->sets_position) {
     set_position(cs);
     return EXECUTED_WORD;
   }
-  motion_program_trace(cs, &coordinate_systems[cs].line);
+  motion_program_trace(cs, &s->line);
   const enum run_time_error error = plan_line(cs);
   if (error == RUN_TIME_NONE) return EXECUTED_WORD;
+  s->pending_triggers = s->pending_velocities = s->pending_vectors = 0;
   p->x.at.statement = p->move; /* a fixed program stays there: all of the move is met again, in the loops of its line */
   p->x.at.loop_count = p->move_loops;
   return executor_fail(&p->x, error);

@@ -4,6 +4,7 @@
 #include "firmware/buffers/rotary.h"
 #include "firmware/kernel/background.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/run/calls.h"
 #include "firmware/run/motor_stops.h"
 #include "firmware/run/run_control.h"
 
@@ -11,6 +12,8 @@ static uint32_t waiting; /* bit a system; one that something else has been told 
 
 error_t restart_begin(uint32_t cs, bool has_number, double program) {
   struct coordinate_system* s = &coordinate_systems[cs];
+  uint32_t number, label;
+  if (!calls_split(program, &number, &label)) return ERR_DATA;
   motors_abort(cs);
   if (rotary_buffers[cs].size != 0) rotary_clear(cs);
   if (!has_number) program = s->pointer == POINTER_FIXED ? (double)s->fixed_program : 0.0;

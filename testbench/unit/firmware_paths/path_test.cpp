@@ -188,7 +188,7 @@ TEST_F(PathErrors, AFeedrateOfZeroIsOneWithAndWithoutSegments) {
 // firmware:7.5/11: all of the move is met again, its I, J, K or R too, be they before its axes.
 TEST_F(PathErrors, BehindAnErrorTheArcIsMetAgain) {
   Lines lead;
-  for (const char* line : {"J0 I5 X10", "X10 J0 I5", "R5 X10", "J0 X10 I5"}) {
+  for (const char* line : {"J0 I5 X10", "X10 J0 I5", "R5 X10", "J0 X10 I5", "X10 I5 J0 DWELL1"}) {
     SCOPED_TRACE(line);
     platform::power_up();
     fit({"1000X", "1000Y"});
@@ -200,6 +200,7 @@ TEST_F(PathErrors, BehindAnErrorTheArcIsMetAgain) {
     platform::servo_ticks(ticks_of(100));
     ASSERT_EQ(host("RY$2014"), "8");
     ASSERT_EQ(motors[0].trajectory, 0);
+    EXPECT_EQ(coordinate_systems[0].pending_vectors, 0u) << "a matrix has turned them already";
     ASSERT_EQ(host("I5189=50 R"), "");
     double highest = 0;
     for (int i = 0; i < 3000 && run_is_running(0); ++i) {
