@@ -1,9 +1,10 @@
-// Jogs whose planning others take the time of (firmware/motion/jog_plan.h).
+// Jogs whose planning others take the time of (firmware/motion/jog_plan.h), and several that one character stops.
 #include <algorithm>
 
 #include "testbench/unit/firmware_program/platform.h"
 
 extern "C" {
+#include "firmware/command/control_characters.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
@@ -56,6 +57,32 @@ TEST(LateJogs, AMomentThatHasJustComeIsInTime) {
     for (; came < 100 && motors[0].trajectory == 0; ++came) jog_servo(0);
     EXPECT_EQ(came, within <= 2 ? 3u : 3u + 8 + 1) << within;
   }
+}
+
+// ^A: one of no system is stopped by its own Ixx15. From 20 counts/ms 20 ms by 1 count/ms^2, 200 ms by 0.1.
+TEST(StoppedJogs, EachDeceleratesByItsOwnRate) {
+  platform::power_up();
+  for (const char* set :
+       {"I100=1 I111=0 I119=1 I120=20 I121=0 I122=20 I115=1", "I200=1 I211=0 I219=1 I220=20 I221=0 I222=20 I215=.1",
+        "I300=1 I311=0 I319=1 I320=20 I321=0 I322=20 I315=1"})
+    ASSERT_EQ(platform::host(set), "");
+  for (unsigned motor = 0; motor < 3; ++motor) {
+    motors[motor].position_scale = 96;
+    motors[motor].loop = LOOP_CLOSED;
+  }
+  ASSERT_EQ(platform::host("#1J+#2J+#3J+"), "");
+  const auto run = [](double ms) {
+    platform::servo_ticks(static_cast<unsigned>(ms * 8388608 / platform::kDefaultI10));
+  };
+  run(60);
+  for (unsigned motor = 0; motor < 3; ++motor) ASSERT_TRUE(jog_is_moving(motor)) << motor;
+  ASSERT_FALSE(control_character(1));
+  run(30);
+  for (unsigned motor = 0; motor < 3; ++motor) EXPECT_EQ(jog_is_moving(motor), motor == 1) << motor;
+  run(160);
+  EXPECT_TRUE(jog_is_moving(1));
+  run(30);
+  EXPECT_FALSE(jog_is_moving(1));
 }
 
 }  // namespace
