@@ -286,6 +286,12 @@ TEST_F(EthernetClients, DatagramsAreRequestsOfTheirSender) {
 
 // ------------------------------------------------------------------------------------------------------------- places
 
+// Every address of IPv4 is none of IPv6.
+TEST(EthernetPlaces, AllOfIpv4CanBeListenedAt) {
+  EXPECT_EQ(EthernetServer("0.0.0.0:0").place().rfind("0.0.0.0:", 0), 0u);
+  EXPECT_EQ(EthernetServer("127.0.0.1:0").place().rfind("127.0.0.1:", 0), 0u);
+}
+
 TEST(EthernetPlaces, WhatCannotBeListenedAtIsSaid) {
   const auto error_of = [](const std::string& place) {
     try {
