@@ -228,6 +228,23 @@ TEST_F(ChannelTimerTest, AResetEmptiesTheServoFraction) {
   EXPECT_EQ(timer2(), 0u);
 }
 
+// Nothing has been counted behind a reset. The first SCLK comes with the first edge of clk_ref, then one each 12 ticks;
+// SERVO from outside is latched 6 ticks behind the reset, and 129 later, when SCLK comes for the twelfth time.
+TEST_F(ChannelTimerTest, BothBeginWithTheReset) {
+  steps(1, 4, true, 100 * kSclk);
+  rig_.reset();
+  rig_.in.servo = false;
+  rig_.ticks(3 + 2 * kTicksPerRef);
+  EXPECT_EQ(timer1(), 0u);
+  EXPECT_EQ(timer2(), 1u);
+  rig_.in.servo = true;
+  rig_.ticks(10 * kSclk);
+  rig_.in.servo = false;
+  rig_.ticks(3 + 2 * kTicksPerRef);
+  EXPECT_EQ(timer1(), 0u) << "there has been no count";
+  EXPECT_EQ(timer2(), 11u);
+}
+
 TEST_F(ChannelTimerTest, CaptureWithACountTakesTheEndOfTheCellAtWhichItCameIn) {
   control(1, kX4 | kFine | kFlag);
   for (const bool up : {true, false, true, true, false, false}) {
