@@ -19,14 +19,10 @@ struct FallLimits {
   static constexpr TimeFs kMicrosecond = 1000 * kFsPerNs;
   static constexpr TimeFs kWorst = 50 * kMicrosecond, kMedian = 24 * kMicrosecond;  // lines of axes with constants
   static constexpr TimeFs kCharacter = 6 * kMicrosecond;                            // other lines, beside kWorst
-  // On a board of more ICs than these the servo interrupt may hold the background off for the whole of a line.
-  static constexpr unsigned kManyIcs = 10;
-  static constexpr TimeFs kWorstOfMany = 64 * kMicrosecond;
   static constexpr std::uint64_t kPhaseCycles = 4'400, kServoCycles = 8'000;
 
-  static constexpr TimeFs of_line(bool axes_with_constants, std::size_t characters, unsigned ics) {
-    return (ics > kManyIcs ? kWorstOfMany : kWorst) +
-           (axes_with_constants ? 0 : static_cast<TimeFs>(characters) * kCharacter);
+  static constexpr TimeFs of_line(bool axes_with_constants, std::size_t characters) {
+    return kWorst + (axes_with_constants ? 0 : static_cast<TimeFs>(characters) * kCharacter);
   }
 
   // The nearest to its limit, or beyond it; there is one at least.

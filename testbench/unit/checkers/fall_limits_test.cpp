@@ -13,18 +13,9 @@ std::vector<Fall> lines(std::size_t count, TimeFs net, TimeFs most = 50 * kUsInF
 }
 
 TEST(FallLimits, ALineOfAxesHas50MicrosecondsOthersSixMoreACharacter) {
-  for (const unsigned ics : {0u, 10u}) {
-    EXPECT_EQ(FallLimits::of_line(true, 255, ics), 50 * kUsInFs);
-    EXPECT_EQ(FallLimits::of_line(false, 0, ics), 50 * kUsInFs);
-    EXPECT_EQ(FallLimits::of_line(false, 255, ics), (50 + 255 * 6) * kUsInFs);
-  }
-}
-
-TEST(FallLimits, OnABoardOfMoreThanTenIcsALineHas64Microseconds) {
-  for (const unsigned ics : {11u, 22u}) {
-    EXPECT_EQ(FallLimits::of_line(true, 255, ics), 64 * kUsInFs);
-    EXPECT_EQ(FallLimits::of_line(false, 255, ics), (64 + 255 * 6) * kUsInFs);
-  }
+  EXPECT_EQ(FallLimits::of_line(true, 255), 50 * kUsInFs);
+  EXPECT_EQ(FallLimits::of_line(false, 0), 50 * kUsInFs);
+  EXPECT_EQ(FallLimits::of_line(false, 255), (50 + 255 * 6) * kUsInFs);
 }
 
 TEST(FallLimits, EachLineIsHeldToItsOwn) {
