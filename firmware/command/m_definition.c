@@ -145,7 +145,7 @@ static void report_multiplexed(const struct m_definition* d) {
 
 static const char* form_name(m_form_t form) {
   unsigned i = 0;
-  while (forms[i].form != form) ++i; /* each is there */
+  while (i + 1u < FORMS && forms[i].form != form) ++i;
   return forms[i].name;
 }
 
