@@ -102,6 +102,12 @@ class EthernetRefused : public ::testing::Test {
     EXPECT_EQ(receive_some(client, reply, sizeof reply), 2);
     return client;
   }
+  void answers_a_datagram(std::uint16_t port) {
+    udp::socket sender(io_, udp::endpoint(udp::v4(), 0));
+    sender.send_to(asio::buffer(kReady), {asio::ip::address_v4::loopback(), port});
+    char reply[4];
+    EXPECT_EQ(receive_some(sender, reply, sizeof reply), 2);
+  }
   static std::string error_of(const std::string& place) {
     try {
       const EthernetServer server(place);
@@ -125,10 +131,7 @@ TEST_F(EthernetRefused, APortThatBothProtocolsHaveIsLookedFor) {
     EXPECT_EQ(times_refused(), 15u);
     start(server);
     answered(port_of(server));
-    udp::socket sender(io_, udp::endpoint(udp::v4(), 0));
-    sender.send_to(asio::buffer(kReady), {asio::ip::address_v4::loopback(), port_of(server)});
-    char reply[4];
-    EXPECT_EQ(receive_some(sender, reply, sizeof reply), 2);
+    answers_a_datagram(port_of(server));
   }
   refused.datagram_binds = 100;
   EXPECT_EQ(error_of("127.0.0.1:0"),
@@ -176,10 +179,7 @@ TEST_F(EthernetRefused, AnAsteriskIsIpv4WhereIpv6AloneIsTheHabit) {
   EthernetServer server("*:0");
   start(server);
   answered(port_of(server));
-  udp::socket sender(io_, udp::endpoint(udp::v4(), 0));
-  sender.send_to(asio::buffer(kReady), {asio::ip::address_v4::loopback(), port_of(server)});
-  char reply[4];
-  EXPECT_EQ(receive_some(sender, reply, sizeof reply), 2);
+  answers_a_datagram(port_of(server));
 }
 
 }  // namespace
